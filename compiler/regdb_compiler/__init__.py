@@ -1,0 +1,1 @@
+"""YAML in, diagnostics and a database out."""

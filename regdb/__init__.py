@@ -1,0 +1,1 @@
+"""The language both sides speak: truth, units, vocabulary, states, condition tree, regulation row, schema."""

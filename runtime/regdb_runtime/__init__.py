@@ -1,0 +1,1 @@
+"""Database and scene in, decision out."""
