@@ -38,7 +38,7 @@ class Baseline:
 
 
 def write(path: Path, diagnostics: Iterable[Diagnostic], sources: Mapping[str, str]) -> int:
-    """Write the findings down as known; syntax errors are not, as nothing can be put up with there. Returns how many."""
+    """Write the findings down as known, save for errors of the file itself. Returns how many."""
     known = [finding for finding in diagnostics if can_be_allowed(finding)]
     names = fingerprints(known, sources)
     counts = Counter(names)

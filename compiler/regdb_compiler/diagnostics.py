@@ -99,6 +99,4 @@ def lines_of(place: Place, text: str) -> str:
 def fingerprints(diagnostics: Iterable[Diagnostic], sources: Mapping[str, str]) -> list[str]:
     """One fingerprint for each finding, in order; a file whose text is not at hand counts as empty."""
     lines = {path: split_lines(text) for path, text in sources.items()}
-    return [
-        fingerprint(d, "\n".join(lines.get(d.place.path, [])[d.place.line - 1 : d.place.end_line])) for d in diagnostics
-    ]
+    return [fingerprint(d, "\n".join(lines.get(d.place.path, [])[d.place.line - 1 : d.place.end_line])) for d in diagnostics]

@@ -5,11 +5,13 @@ import tempfile
 from collections import defaultdict
 from collections.abc import Collection, Iterable, Mapping
 from dataclasses import dataclass
+from itertools import pairwise
 from pathlib import Path
 
 from regdb_compiler.diagnostics import Diagnostic, Edit, Fix, FixKind, in_order
 from regdb_compiler.tree import Lines
 
+SAFE: tuple[FixKind, ...] = ("safe",)
 Span = tuple[int, int, str]
 """Start and end offset in the old text, and the new text between them."""
 
@@ -26,16 +28,14 @@ class Fixed:
 def apply_edits(text: str, edits: Iterable[Edit]) -> str:
     """The text with all edits made. Raises ValueError if two of them overlap."""
     spans = sorted(set(_spans(text, edits)))
-    if any(_overlap(one, other) for one, other in zip(spans, spans[1:], strict=False)):
+    if any(_overlap(one, other) for one, other in pairwise(spans)):
         raise ValueError("edits overlap")
     for start, end, new in reversed(spans):
         text = text[:start] + new + text[end:]
     return text
 
 
-def apply_fixes(
-    diagnostics: Iterable[Diagnostic], sources: Mapping[str, str], kinds: Collection[FixKind] = ("safe",)
-) -> Fixed:
+def apply_fixes(diagnostics: Iterable[Diagnostic], sources: Mapping[str, str], kinds: Collection[FixKind] = SAFE) -> Fixed:
     """Make the fixes of these kinds; `legal` ones never, as only a person may change the law's meaning.
 
     Of two fixes that overlap the first by place is made, and the other is reported as skipped.
@@ -74,10 +74,7 @@ def write_beside(path: Path, text: str) -> None:
 
 def _spans(text: str, edits: Iterable[Edit]) -> list[Span]:
     lines = Lines("", text)
-    return [
-        (lines.offset(e.place.line, e.place.column), lines.offset(e.place.end_line, e.place.end_column), e.text)
-        for e in edits
-    ]
+    return [(lines.offset(e.place.line, e.place.column), lines.offset(e.place.end_line, e.place.end_column), e.text) for e in edits]
 
 
 def _overlap(one: Span, other: Span) -> bool:
@@ -103,7 +100,7 @@ def _wanted(fix: Fix, sources: Mapping[str, str]) -> dict[str, set[Span]] | None
     wanted = {path: set(_spans(sources[path], edits)) for path, edits in by_path.items()}
     for spans in wanted.values():
         ordered = sorted(spans)
-        if any(_overlap(one, other) for one, other in zip(ordered, ordered[1:], strict=False)):
+        if any(_overlap(one, other) for one, other in pairwise(ordered)):
             return None
     return wanted
 

@@ -113,9 +113,7 @@ def _relative(path: Path, root: Path) -> str:
         return path.as_posix()
 
 
-def _unread(
-    path: str, code: str, message: str, text: str = "", advice: str = "", place: Place | None = None
-) -> SourceFile:
+def _unread(path: str, code: str, message: str, text: str = "", advice: str = "", place: Place | None = None) -> SourceFile:
     """A file without a tree, and the reason."""
     problem = Diagnostic(code, NAMES[code], "error", message, place or Place(path, 1, 1, 1, 1), help=advice)
     return SourceFile(path, text, None, (), (problem,))

@@ -10,7 +10,7 @@ from regdb_compiler.tree import Lines, Mapping, Node, Scalar, Sequence
 
 MARK = re.compile(r"(?:^|(?<=\s))#[ \t]*regdb:[^\n]*", re.MULTILINE)
 ALLOW = re.compile(
-    r"#[ \t]*regdb:[ \t]*(?P<verb>allow|allow-file)[ \t]+(?P<rules>[\w-]+(?:[ \t]*,[ \t]*[\w-]+)*)[ \t]*"
+    r"#[ \t]*regdb:[ \t]*(?P<verb>allow|allow-file)[ \t]+(?P<rules>\w[\w-]*(?:[ \t]*,[ \t]*\w[\w-]*)*)[ \t]*"
     r"(?:--[ \t]*(?P<reason>.*))?"
 )
 

@@ -59,9 +59,7 @@ class _Reading:
     def add(self, problem: Diagnostic) -> None:
         self.problems.append(problem)
         if len(self.problems) >= MAX_PROBLEMS:
-            raise StopReading(
-                Diagnostic("R001", "yaml-syntax", "error", "too many problems; reading stops here", problem.place)
-            )
+            raise StopReading(Diagnostic("R001", "yaml-syntax", "error", "too many problems; reading stops here", problem.place))
 
 
 def read_events(lines: Lines, problems: list[Diagnostic]) -> tuple[Node | None, bool]:

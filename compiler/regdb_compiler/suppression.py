@@ -22,9 +22,7 @@ class Sifted:
     suppressed: tuple[tuple[Diagnostic, str], ...]
 
 
-def apply(
-    diagnostics: Iterable[Diagnostic], files: Iterable[SourceFile], *, report_unused: bool = True
-) -> tuple[Diagnostic, ...]:
+def apply(diagnostics: Iterable[Diagnostic], files: Iterable[SourceFile], *, report_unused: bool = True) -> tuple[Diagnostic, ...]:
     """The findings that no comment allows, with those about the comments themselves, in order."""
     return sift(diagnostics, files, report_unused=report_unused).kept
 
@@ -69,9 +67,7 @@ def _allowing(finding: Diagnostic, comments: tuple[Suppression, ...]) -> list[tu
     ]
 
 
-def _about_comments(
-    file: SourceFile, used: set[tuple[Suppression, str]], *, report_unused: bool
-) -> Iterable[Diagnostic]:
+def _about_comments(file: SourceFile, used: set[tuple[Suppression, str]], *, report_unused: bool) -> Iterable[Diagnostic]:
     for comment in file.comments:
         if not comment.rules:
             yield _finding("R904", comment.place, "this comment is not understood", FORM)
