@@ -12,8 +12,6 @@ TOLD: tuple[tuple[str, str, str], ...] = (
      "write `key: value`, or indent the line so that it continues the text above"),
     ("did not find expected '-' indicator", "this line is level with a list but is not an item of it",
      "begin it with `- `, or indent it to belong to the item above or to the mapping outside"),
-    ("did not find expected key", "no key begins here: the indentation matches no key above, or text follows a value",
-     "line the key up with the keys it belongs to; text after a closing quote must go inside the quotes"),
     ("did not find expected ',' or ']'", "this list in brackets is not closed where it should be",
      "separate its items by commas and close it with `]`"),
     ("did not find expected ',' or '}'", "this mapping in braces is not closed where it should be",
@@ -45,9 +43,11 @@ def syntax_error(lines: Lines, problem: str, at: int, context: str, context_at: 
     if problem in UNCLOSED and context_at is not None:
         return _unclosed_quote(lines, context_at)
     at = min(at, _last_word(lines.text))
+    if "could not find expected ':'" in problem and context_at is not None:
+        at = context_at
     message, advice = _explain(lines, problem, at)
     return Diagnostic(
-        "R001", "yaml-syntax", "error", message, _word_place(lines, at),
+        "R001", "yaml-syntax", "error", message, _place(lines, problem, at),
         note=_expectation(problem), help=advice, related=_related(lines, context, context_at, at),
     )  # fmt: skip
 
@@ -64,6 +64,8 @@ def _explain(lines: Lines, problem: str, at: int) -> tuple[str, str]:
     """Our message and advice for one of libyaml's problems."""
     if COLON in problem:
         return _explain_colon(lines, at)
+    if "did not find expected key" in problem:
+        return _explain_key(lines, at)
     if "cannot start any token" in problem:
         return _explain_character(lines.text[at : at + 1])
     for known, message, advice in TOLD:
@@ -74,8 +76,7 @@ def _explain(lines: Lines, problem: str, at: int) -> tuple[str, str]:
 
 def _explain_colon(lines: Lines, at: int) -> tuple[str, str]:
     """A colon where no key can be: a second one on its line, or a line deeper than a finished value."""
-    before = lines.text[lines.starts[lines.line(at) - 1] : at]
-    if re.search(r":\s", before):
+    if re.search(r":\s", _before(lines, at)):
         return "a colon followed by a space stands in text without quotes", "put the whole text in quotes"
     return (
         "this key stands where no key can be: the line above already has its value",
@@ -83,10 +84,30 @@ def _explain_colon(lines: Lines, at: int) -> tuple[str, str]:
     )
 
 
+def _explain_key(lines: Lines, at: int) -> tuple[str, str]:
+    """No key where one must be: words after a closing quote, a list item among keys, or an odd indentation."""
+    if _before(lines, at).strip():
+        return (
+            "text follows a value that has ended",
+            "put all of it inside the quotes; inside single quotes write `''` for an apostrophe",
+        )
+    if lines.text.startswith("- ", at):
+        return "a list item stands among keys", "indent it under the key that it belongs to, on a line below the key"
+    return (
+        "the indentation of this line matches no key above it",
+        "line it up with the keys it belongs to; text of a block must all be indented at least like its first line",
+    )
+
+
 def _explain_character(char: str) -> tuple[str, str]:
     if char == "\t":
         return "this line is indented with a tab", "indent with spaces"
-    return f"a value without quotes cannot begin with `{char}`", "put the value in quotes"
+    return f'a value without quotes cannot begin with "{char}"', "put the value in quotes"
+
+
+def _before(lines: Lines, at: int) -> str:
+    """What stands on the line before an offset."""
+    return lines.text[lines.starts[lines.line(at) - 1] : at]
 
 
 def _expectation(problem: str) -> str:
@@ -103,9 +124,16 @@ def _related(lines: Lines, context: str, context_at: int | None, at: int) -> tup
         "while parsing a flow mapping": "the mapping in braces begins here",
         "while parsing a block collection": "the list begins here",
         "while parsing a block mapping": "the mapping begins here",
-        "while scanning a simple key": "this is the line that is neither key nor item",
     }.get(context)
     return ((_word_place(lines, context_at), thing),) if thing else ()
+
+
+def _place(lines: Lines, problem: str, at: int) -> Place:
+    """The word at fault; of a key that is out of place, the key and not its colon."""
+    before = _before(lines, at)
+    if COLON in problem and not re.search(r":\s", before) and before.strip():
+        return lines.place(at - len(before.lstrip()), at)
+    return _word_place(lines, at)
 
 
 def _last_word(text: str) -> int:

@@ -42,6 +42,8 @@ def sift(diagnostics: Iterable[Diagnostic], files: Iterable[SourceFile], *, repo
         else:
             kept.append(finding)
     for file in files:
+        if file.root is None:
+            continue  # what is a comment and what is text is not certain there
         kept.extend(_about_comments(file, used, report_unused=report_unused))
     return Sifted(in_order(kept), tuple(suppressed))
 
@@ -74,7 +76,7 @@ def _about_comments(file: SourceFile, used: set[tuple[Suppression, str]], *, rep
         elif not comment.reason:
             message = f"no reason is given for allowing {_listed(comment.rules)}, so it is not allowed"
             yield _finding("R901", comment.place, message, "end the comment with ` -- ` and the reason")
-        elif report_unused and file.root is not None:
+        elif report_unused:
             unused = tuple(rule for rule in comment.rules if (comment, rule) not in used)
             if unused:
                 yield _unused(file, comment, unused)
