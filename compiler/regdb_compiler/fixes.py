@@ -2,6 +2,7 @@
 
 import os
 import tempfile
+from bisect import bisect_left
 from collections import defaultdict
 from collections.abc import Collection, Iterable, Mapping
 from dataclasses import dataclass
@@ -27,12 +28,10 @@ class Fixed:
 
 def apply_edits(text: str, edits: Iterable[Edit]) -> str:
     """The text with all edits made. Raises ValueError if two of them overlap."""
-    spans = sorted(set(_spans(text, edits)))
+    spans = sorted(_spans(Lines("", text), edits))
     if any(_overlap(one, other) for one, other in pairwise(spans)):
         raise ValueError("edits overlap")
-    for start, end, new in reversed(spans):
-        text = text[:start] + new + text[end:]
-    return text
+    return _edited(text, spans)
 
 
 def apply_fixes(diagnostics: Iterable[Diagnostic], sources: Mapping[str, str], kinds: Collection[FixKind] = SAFE) -> Fixed:
@@ -40,19 +39,20 @@ def apply_fixes(diagnostics: Iterable[Diagnostic], sources: Mapping[str, str], k
 
     Of two fixes that overlap the first by place is made, and the other is reported as skipped.
     """
-    taken: dict[str, set[Span]] = defaultdict(set)
+    lines = {path: Lines(path, text) for path, text in sources.items()}
+    taken: dict[str, list[Span]] = defaultdict(list)
     applied: list[Diagnostic] = []
     skipped: list[Diagnostic] = []
     for finding in in_order(diagnostics):
         if finding.fix is None or finding.fix.kind not in kinds or finding.fix.kind == "legal":
             continue
-        wanted = _wanted(finding.fix, sources)
+        wanted = _wanted(finding.fix, lines)
         if wanted is None or any(_clashes(spans, taken[path]) for path, spans in wanted.items()):
             skipped.append(finding)
             continue
         applied.append(finding)
         for path, spans in wanted.items():
-            taken[path] |= spans
+            _take(taken[path], spans)
     return Fixed(_changed(sources, taken), tuple(applied), tuple(skipped))
 
 
@@ -72,9 +72,8 @@ def write_beside(path: Path, text: str) -> None:
         raise
 
 
-def _spans(text: str, edits: Iterable[Edit]) -> list[Span]:
-    lines = Lines("", text)
-    return [(lines.offset(e.place.line, e.place.column), lines.offset(e.place.end_line, e.place.end_column), e.text) for e in edits]
+def _spans(lines: Lines, edits: Iterable[Edit]) -> set[Span]:
+    return {(lines.offset(e.place.line, e.place.column), lines.offset(e.place.end_line, e.place.end_column), e.text) for e in edits}
 
 
 def _overlap(one: Span, other: Span) -> bool:
@@ -85,32 +84,46 @@ def _overlap(one: Span, other: Span) -> bool:
     return second[0] < first[1]
 
 
-def _clashes(wanted: set[Span], taken: set[Span]) -> bool:
-    """The very same edit, asked for by two findings, is no clash."""
-    return any(_overlap(one, other) for one in wanted - taken for other in taken)
+def _clashes(wanted: set[Span], taken: list[Span]) -> bool:
+    """Whether a span overlaps one taken before; only neighbours can. The very same edit, wanted twice, is no clash."""
+    for span in wanted:
+        at = bisect_left(taken, span)
+        near = taken[max(at - 1, 0) : at + 1]
+        if span not in near and any(_overlap(span, other) for other in near):
+            return True
+    return False
 
 
-def _wanted(fix: Fix, sources: Mapping[str, str]) -> dict[str, set[Span]] | None:
+def _take(taken: list[Span], spans: set[Span]) -> None:
+    """Put spans that clash with none into the sorted list, each once."""
+    for span in spans:
+        at = bisect_left(taken, span)
+        if taken[at : at + 1] != [span]:
+            taken.insert(at, span)
+
+
+def _wanted(fix: Fix, lines: Mapping[str, Lines]) -> dict[str, set[Span]] | None:
     """A fix's edits by file; None if it overlaps itself or speaks of a file whose text is not at hand."""
     by_path: dict[str, list[Edit]] = defaultdict(list)
     for edit in fix.edits:
         by_path[edit.place.path].append(edit)
-    if not by_path or not by_path.keys() <= sources.keys():
+    if not by_path or not by_path.keys() <= lines.keys():
         return None
-    wanted = {path: set(_spans(sources[path], edits)) for path, edits in by_path.items()}
-    for spans in wanted.values():
-        ordered = sorted(spans)
-        if any(_overlap(one, other) for one, other in pairwise(ordered)):
-            return None
+    wanted = {path: _spans(lines[path], edits) for path, edits in by_path.items()}
+    if any(_overlap(one, other) for spans in wanted.values() for one, other in pairwise(sorted(spans))):
+        return None
     return wanted
 
 
-def _changed(sources: Mapping[str, str], taken: Mapping[str, set[Span]]) -> dict[str, str]:
-    texts: dict[str, str] = {}
-    for path, spans in sorted(taken.items()):
-        text = sources[path]
-        for start, end, new in sorted(spans, reverse=True):
-            text = text[:start] + new + text[end:]
-        if text != sources[path]:
-            texts[path] = text
-    return texts
+def _changed(sources: Mapping[str, str], taken: Mapping[str, list[Span]]) -> dict[str, str]:
+    texts = {path: _edited(sources[path], spans) for path, spans in sorted(taken.items())}
+    return {path: text for path, text in texts.items() if text != sources[path]}
+
+
+def _edited(text: str, spans: Iterable[Span]) -> str:
+    """The text with sorted spans put in."""
+    parts, at = [], 0
+    for start, end, new in spans:
+        parts += [text[at:start], new]
+        at = end
+    return "".join([*parts, text[at:]])

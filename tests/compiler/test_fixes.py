@@ -1,6 +1,7 @@
 """Edits go in whole, without touching each other, and never change the law by themselves."""
 
 import os
+import time
 from pathlib import Path
 
 import pytest
@@ -93,6 +94,14 @@ def test_fixes_keep_all_that_they_do_not_speak_of(spans: list[tuple[int, int, st
     touched = {at for p in places for at in range(p.column - 1, p.end_column - 1)}
     left = "".join(char for at, char in enumerate(text) if at not in touched)
     assert "".join(char for char in fixed if char.isupper()) == left
+
+
+def test_thousands_of_fixes_are_made_at_once() -> None:
+    text = "word\n" * 3_000
+    findings = [finding(Edit(place(line, 1, 5), "w")) for line in range(1, 3_001)]
+    started = time.process_time()
+    assert apply_fixes(findings, {"a.yaml": text}).texts == {"a.yaml": "w\n" * 3_000}
+    assert time.process_time() - started < 3
 
 
 def test_a_file_is_replaced_in_one_step_with_its_mode(tmp_path: Path) -> None:

@@ -2,6 +2,7 @@
 
 import json
 import re
+import time
 from typing import Any
 from xml.etree import ElementTree as ET
 
@@ -116,6 +117,16 @@ def test_a_long_line_is_cut_around_the_caret() -> None:
     assert source.endswith("...")
     assert max(len(source), len(carets)) <= 80
     assert source[carets.index("^") : carets.rindex("^") + 1] == "WRONG"
+
+
+def test_a_line_of_a_megabyte_is_cut_at_once() -> None:
+    line = "é" * 1_000_000 + "X" + "é" * 1_000_000
+    started = time.process_time()
+    source, carets = frame(line, finding(1, 1_000_001, 1_000_002))
+    assert time.process_time() - started < 0.5
+    assert source.startswith("1 | ...é")
+    assert source.endswith("é...")
+    assert source[carets.index("^")] == "X"
 
 
 def test_a_long_note_goes_under_the_carets() -> None:

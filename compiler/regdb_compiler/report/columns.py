@@ -38,6 +38,9 @@ def visible(text: str) -> str:
 
 def fit(line: str, start: int, end: int, room: int) -> Shown:
     """Cut a line so that it takes at most `room` columns and shows where characters `start` to `end` begin."""
+    if len(line) > 8 * room:
+        aside = max(start - 2 * room, 0)
+        line, start, end = line[aside : start + 4 * room], start - aside, end - aside
     cells = [visible(char) for char in line]
     starts = [0]
     for cell in cells:
