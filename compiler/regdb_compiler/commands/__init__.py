@@ -1,0 +1,1 @@
+"""The author's commands; only these modules print or exit."""

@@ -1,0 +1,50 @@
+"""The one module that knows the order of the passes: read, resolve, precedence, authority, lower."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from pathlib import Path
+
+from regdb.regulation import Regulation
+from regdb_compiler.authority import Authority
+from regdb_compiler.corpus import Corpus, read_corpus
+from regdb_compiler.diagnostics import Diagnostic, in_order
+from regdb_compiler.lower import Row, lower
+from regdb_compiler.precedence import Targets, find_targets
+from regdb_compiler.resolve import Resolution, resolve
+from regdb_compiler.timeline import check_timeline
+
+
+@dataclass(frozen=True)
+class Build:
+    """A codes folder taken as far as rows; `diagnostics` are all errors that reading and resolving found."""
+
+    corpus: Corpus
+    resolution: Resolution
+    targets: Targets
+    authority: Authority
+    diagnostics: tuple[Diagnostic, ...]
+
+    @cached_property
+    def rows(self) -> tuple[Row, ...]:
+        """Rows of every sound regulation. With errors among the diagnostics they are for looking at, not for driving."""
+        return lower(self.resolution, self.targets, self.authority)
+
+    @cached_property
+    def regulations(self) -> tuple[Regulation, ...]:
+        return tuple(row.regulation for row in self.rows)
+
+    @property
+    def has_errors(self) -> bool:
+        return any(item.level == "error" for item in self.diagnostics)
+
+
+def build(codes: Path) -> Build:
+    """Read and resolve a codes folder. Never raises for what is in it."""
+    corpus = read_corpus(codes)
+    resolution = resolve(corpus)
+    targets = find_targets(corpus)
+    authority = Authority(resolution, targets)
+    found = (*corpus.diagnostics, *resolution.diagnostics, *targets.problems, *check_timeline(corpus), *authority.check())
+    return Build(corpus, resolution, targets, authority, in_order(found))

@@ -1,0 +1,60 @@
+"""Where the front door finds codes and databases: the working directory's codes, else the shipped ones."""
+
+from __future__ import annotations
+
+import importlib
+import os
+from pathlib import Path
+from typing import Any
+
+
+class FrontError(Exception):
+    """Something a person can put right: a missing extra, a folder that is not there. The message says how."""
+
+
+def shipped_codes() -> Path:
+    """The codes that came with the package: inside it when installed, beside it in a checkout."""
+    inside = Path(__file__).parent / "codes"
+    return inside if inside.is_dir() else Path(__file__).parents[1] / "codes"
+
+
+def codes_folder(codes: Path | None) -> Path:
+    """The codes a command works on: the ones named, else `codes/` here, else the shipped ones. Raises FrontError."""
+    if codes is not None:
+        if not codes.is_dir():
+            raise FrontError(f"{codes} is no folder of codes; name one with `--codes DIR`")
+        return codes
+    here = Path("codes")
+    return here if (here / "jurisdictions.yaml").is_file() else shipped_codes()
+
+
+def author_side(module: str) -> Any:
+    """A module of the compiler, loaded when first needed. Raises FrontError with what to install when it is missing."""
+    return _load(f"regdb_compiler.{module}", "compiler")
+
+
+def vehicle_side(module: str) -> Any:
+    """A module of the runtime, loaded when first needed. Raises FrontError with what to install when it is missing."""
+    return _load(f"regdb_runtime.{module}", "")
+
+
+def _load(name: str, extra: str) -> Any:
+    try:
+        return importlib.import_module(name)
+    except ModuleNotFoundError as error:
+        if error.name is None or error.name.partition(".")[0].startswith("regdb"):
+            raise
+        package = f"'regdb[{extra}]'" if extra else "regdb"
+        raise FrontError(f"this needs the package {error.name}, which is not installed; type: pip install {package}") from error
+
+
+def cache_folder() -> Path:
+    """Where compiled databases of codes folders are kept between commands."""
+    base = os.environ.get("XDG_CACHE_HOME")
+    return (Path(base) if base else Path.home() / ".cache") / "regdb"
+
+
+def database(codes: Path | None = None) -> Path:
+    """The database compiled from a codes folder, from the cache when nothing changed since. Raises FrontError when the codes have errors."""
+    path: Path = author_side("cache").cached_database(codes_folder(codes), cache_folder())
+    return path

@@ -1,0 +1,3 @@
+"""The version of regdb."""
+
+VERSION = "0.1.0"

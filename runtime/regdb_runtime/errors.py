@@ -1,0 +1,41 @@
+"""Every error the runtime raises, as one tree.
+
+RegdbRuntimeError
+├── DatabaseError          the file cannot be used
+│   ├── NotADatabase       not SQLite, or SQLite of somebody else
+│   ├── VersionRefused     a schema of another major version
+│   └── DatabaseDamaged    truncated, altered, or with rows that mean nothing
+├── RequestError           a place, date or state that is not there
+└── MissingExtra           an optional library is needed; says what to type
+"""
+
+
+class RegdbRuntimeError(Exception):
+    """What everything below is; the message is one sentence for a person."""
+
+
+class DatabaseError(RegdbRuntimeError):
+    """A database file that cannot be used."""
+
+
+class NotADatabase(DatabaseError):  # noqa: N818  # reads as what it says
+    """A file that is not a regulation database at all."""
+
+
+class VersionRefused(DatabaseError):  # noqa: N818
+    """A database of a schema this runtime does not speak."""
+
+
+class DatabaseDamaged(DatabaseError):  # noqa: N818
+    """A database that is not as its compiler left it."""
+
+
+class RequestError(RegdbRuntimeError, ValueError):
+    """A question about a place, date or state that the database does not know."""
+
+
+class MissingExtra(RegdbRuntimeError):  # noqa: N818
+    """A library that is not installed; the message carries the exact command that installs it."""
+
+    def __init__(self, library: str, extra: str, purpose: str) -> None:
+        super().__init__(f"{purpose} needs {library}: pip install 'regdb[{extra}]'")

@@ -1,0 +1,103 @@
+"""Condition trees from the JSON of many rows at once: equal literals become one object, every fact is checked against the vocabulary."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable, Collection, Sequence
+from typing import Any
+
+from regdb.condition import And, Const, Linear, Literal, Node, Not, Or, literal_facts
+from regdb.condition_text import from_data, linear_from_data
+from regdb_runtime.errors import DatabaseDamaged
+
+
+class ConditionReader:
+    """Reads trees and linear expressions; holds the literals met so far."""
+
+    def __init__(self, facts: Collection[str]) -> None:
+        self._facts = facts
+        self._literals: dict[Any, Literal] = {}
+        self._operators: dict[str, Callable[[Any], Node]] = {
+            "and": lambda data: And(tuple([self._node(part) for part in data[1:]])),
+            "or": lambda data: Or(tuple([self._node(part) for part in data[1:]])),
+            "not": lambda data: Not(self._node(data[1])) if len(data) == 2 else self._damaged(data),
+        }
+
+    def trees(self, texts: Sequence[str | None]) -> list[Node | None]:
+        """One tree per text, None where the text is None. Raises DatabaseDamaged for what is no tree or reads no known fact."""
+        return [None if data is None else self._tree(data) for data in _parse(texts)]
+
+    def linears(self, texts: Sequence[str]) -> list[Linear]:
+        """One linear expression per text. Raises DatabaseDamaged."""
+        found = []
+        for data in _parse(texts):
+            try:
+                expression = linear_from_data(data)
+            except (TypeError, ValueError) as error:
+                raise DatabaseDamaged(f"the bound {json.dumps(data)} is no linear expression") from error
+            for _, fact in expression.terms:
+                self._check(fact)
+            found.append(expression)
+        return found
+
+    def _tree(self, data: Any) -> Node:
+        try:
+            return self._node(data)
+        except (TypeError, ValueError, IndexError, KeyError, AttributeError, RecursionError) as error:
+            raise DatabaseDamaged(f"the condition {json.dumps(data)[:200]} is no condition tree") from error
+
+    def _node(self, data: Any) -> Node:
+        operator = self._operators.get(data[0])
+        if operator is not None:
+            return operator(data)
+        key = _key(data)
+        found = self._literals.get(key)
+        if found is None:
+            found = self._literals[key] = self._literal(data)
+        return found
+
+    def _literal(self, data: Any) -> Literal:
+        node = from_data(data)
+        if isinstance(node, (And, Or, Not)):
+            self._damaged(data)
+        if not isinstance(node, Const):
+            for fact in literal_facts(node):  # type: ignore[arg-type]  # operators are refused above
+                self._check(fact)
+        return node  # type: ignore[return-value]
+
+    def _check(self, fact: str) -> None:
+        if fact not in self._facts:
+            raise DatabaseDamaged(f"a condition reads the fact {fact!r}, which the vocabulary of this database lacks")
+
+    def _damaged(self, data: Any) -> Any:
+        raise DatabaseDamaged(f"the condition {json.dumps(data)[:200]} is no condition tree")
+
+
+def _parse(texts: Sequence[str | None]) -> list[Any]:
+    """The JSON of all texts, read as one array; where that fails, one by one to name the culprit."""
+    joined = ",".join(["null" if text is None else text for text in texts])
+    try:
+        data = json.loads(f"[{joined}]")
+    except ValueError:
+        data = []
+    return data if len(data) == len(texts) else [_parse_one(text) for text in texts]
+
+
+def _parse_one(text: str | None) -> Any:
+    try:
+        return None if text is None else json.loads(text)
+    except ValueError as error:
+        raise DatabaseDamaged(f"{text[:200] if text else text!r} is not JSON") from error
+
+
+def _key(data: Any) -> Any:
+    """A literal's data as something that can be looked up; the commonest shapes without a detour."""
+    kind = data[0]
+    if kind == "in":
+        return (kind, data[1], *data[2])
+    if kind == "cmp":
+        left, right = data[2], data[3]
+        return (data[1], left[0], *map(tuple, left[1]), right[0], *map(tuple, right[1]), data[4], data[5])
+    if kind == "const":
+        return (kind, data[1] is True, type(data[1]))
+    return tuple(data)
