@@ -8,6 +8,7 @@ import sqlite3
 from collections.abc import Iterable, Iterator, Mapping
 from contextlib import closing, contextmanager
 from dataclasses import dataclass
+from datetime import date
 from pathlib import Path
 
 from regdb.content_hash import content_hash
@@ -105,19 +106,12 @@ class RegulationDatabase:
             row = connection.execute(
                 "SELECT s.citation, s.title, v.text, s.source_url, v.effective, v.until FROM regulation r "
                 "JOIN section_version v ON v.key = r.section_version JOIN section s ON s.id = v.section "
-                "WHERE r.id = ? ORDER BY r.effective = date(?, 'unixepoch') DESC LIMIT 1",
-                (regulation.id, _unix(regulation.effective)),
+                "WHERE r.id = ? AND r.effective IS ?",
+                (regulation.id, None if regulation.effective is None else date.fromordinal(regulation.effective).isoformat()),
             ).fetchone()
         if row is None:
             raise DatabaseError(f"{self.path} has no text for {regulation.id}")
         return SectionText(*row)
-
-
-_EPOCH = 719163  # ordinal of 1970-01-01
-
-
-def _unix(day: int | None) -> int | None:
-    return None if day is None else (day - _EPOCH) * 86400
 
 
 def _stamp(path: Path) -> _Stamp:

@@ -98,19 +98,19 @@ class View:
 
     def judge(self, scene: Scene | PreparedScene, plan: Plan) -> Verdict:
         """The verdict for a plan in a scene. Raises RequestError for a state that is not there."""
-        prepared = scene if scene.__class__ is PreparedScene and scene.table is self._table else self._prepared(scene)  # type: ignore[union-attr]
+        prepared = scene if scene.__class__ is PreparedScene and scene.table is self._table else self._prepared(scene)
         found = self._decides.get((plan.current, plan.next)) or self._rules.bucket(plan.current, plan.next)
-        if not prepared.wrong:  # type: ignore[union-attr]
-            values = self._table.with_plan(prepared, plan)  # type: ignore[arg-type]
+        if not prepared.wrong:
+            values = self._table.with_plan(prepared, plan)
             if values is not None:
                 try:
-                    return Verdict(found[0](values), found[1].rules, self.circumstances, prepared.scene, plan)  # type: ignore[union-attr]
-                except Exception:  # noqa: BLE001, S110  # judged again below, where what fails fails closed and says why
+                    return Verdict(found[0](values), found[1].rules, self.circumstances, prepared.scene, plan)
+                except Exception:  # noqa: BLE001  # judged again below, where what fails fails closed and says why
                     pass
             tidied, lost, wrong = self._table.tidy(plan.facts)
             if values is None and not lost and not wrong:
                 return self.judge(prepared, Plan(plan.current, plan.next, tidied))
-        return self._guarded(found[1], prepared.scene, plan)  # type: ignore[union-attr]
+        return self._guarded(found[1], prepared.scene, plan)
 
     def lawful_next(
         self, scene: Scene | PreparedScene, current: str, plan_facts: Mapping[str, Value] | None = None

@@ -52,20 +52,24 @@ def _fact(
 
 def _value(name: str, kind: str, text: str) -> Value:
     """A stored value as the fact's type: JSON in SI."""
-    data = json.loads(text)
+    data: Any = json.loads(text)
     if kind == "set" and isinstance(data, list):
         return frozenset(data)
-    expected = {"boolean": bool, "enumeration": str, "set": list}.get(kind, (int, float))
-    if not isinstance(data, expected) or (kind != "boolean" and isinstance(data, bool)):  # type: ignore[arg-type]
+    expected = {"boolean": (bool,), "enumeration": (str,)}.get(kind, (int, float))
+    if kind == "set" or type(data) not in expected:
         raise DatabaseDamaged(f"{text} cannot stand for the fact {name!r}, which is a {kind}")
-    return data  # type: ignore[no-any-return]
+    found: Value = data
+    return found
 
 
 def read_tree(connection: sqlite3.Connection) -> JurisdictionTree:
     """The tree of jurisdictions. Raises DatabaseDamaged."""
     columns = "id, name, kind, parent, status, code, short, long, territory, road_owners, source"
     rows = connection.execute(f"SELECT {columns} FROM jurisdiction ORDER BY rowid")
-    items = [Jurisdiction(*row[:8], tuple(json.loads(row[8])), tuple(json.loads(row[9])), row[10]) for row in rows]
+    items = [
+        Jurisdiction(place, name, kind, parent, status, code, short, long, tuple(json.loads(land)), tuple(json.loads(owners)), source)
+        for place, name, kind, parent, status, code, short, long, land, owners, source in rows
+    ]
     try:
         return JurisdictionTree(items)
     except JurisdictionError as error:
@@ -88,7 +92,10 @@ def read_machine(connection: sqlite3.Connection) -> StateMachine:
     ).fetchall()
     if not rows:
         raise DatabaseDamaged("the database has no states")
-    supers = [SuperState(*row[:3], tuple(json.loads(row[3])), *row[4:6], tuple(json.loads(row[6])), bool(row[7])) for row in rows]
+    supers = [
+        SuperState(name, meaning, prompt, tuple(json.loads(after)), entry, leave, tuple(json.loads(aliases)), bool(anywhere))
+        for name, meaning, prompt, after, entry, leave, aliases, anywhere, _ in rows
+    ]
     return StateMachine(supers, states, next((row[0] for row in rows if row[8]), rows[0][0]))
 
 

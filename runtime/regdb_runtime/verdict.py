@@ -21,7 +21,7 @@ class Circumstances:
 
     __slots__ = ("database_hash", "date", "model", "place", "vocabulary")
 
-    def __init__(self, vocabulary: Vocabulary, place: str, date: str, model: bool, database_hash: str) -> None:  # noqa: FBT001
+    def __init__(self, vocabulary: Vocabulary, place: str, date: str, model: bool, database_hash: str) -> None:
         self.vocabulary, self.place, self.date = vocabulary, place, date
         self.model, self.database_hash = model, database_hash
 

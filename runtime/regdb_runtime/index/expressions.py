@@ -31,7 +31,7 @@ class Expressions:
         """The expressions (possibly, surely) of a part of a condition; deep ones call an exact function."""
         found = self._written.get(node)
         if found is None:
-            found = self._call(node) if depth(node) > _DEEPEST else (self.write(node, True), self.write(node, False))
+            found = self._call(node) if depth(node) > _DEEPEST else (self.write(node, possible=True), self.write(node, possible=False))
             self._written[node] = found
         return found
 
@@ -47,7 +47,7 @@ class Expressions:
         name = self.hold(condition(node, self.table), ("condition", node))
         return f"({name}(f) is not False)", f"({name}(f) is True)"
 
-    def write(self, node: Node, possible: bool) -> str:
+    def write(self, node: Node, *, possible: bool) -> str:
         """One expression: whether the node is possibly (`possible`) or surely true."""
         match node:
             case And(parts):
@@ -76,7 +76,7 @@ class Expressions:
                 return self._compare(node, possible)
 
     def _join(self, word: str, parts: tuple[Node, ...], possible: bool) -> str:
-        return "(" + word.join(self.write(part, possible) for part in parts) + ")"
+        return "(" + word.join(self.write(part, possible=possible) for part in parts) + ")"
 
     def _negated(self, node: Node, possible: bool) -> str:
         match node:
@@ -85,7 +85,7 @@ class Expressions:
             case Compare():
                 return self._compare(Compare(OPPOSITE[node.op], node.left, node.right), possible)
             case _:
-                return f"(not {self.write(node, not possible)})"
+                return f"(not {self.write(node, possible=not possible)})"
 
     def _guard(self, slot: int, test: str, possible: bool) -> str:
         """A test of x, the value in a slot, with what an unknown value makes of it."""

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections import Counter
 from dataclasses import dataclass
+from typing import Any
 
 from regdb_runtime.index.bucket import Bucket, Decide, Part
 from regdb_runtime.index.conjuncts import chance
@@ -37,8 +38,8 @@ class Item:
 def generate(bucket: Bucket) -> Decide:
     """Compile a bucket into one function of the values."""
     source, names = write(bucket)
-    space = {"__builtins__": {}, **names}
-    exec(compile(source, "<regdb bucket>", "exec"), space)  # noqa: S102  # made of checked nodes only, see expressions
+    space: dict[str, Any] = {"__builtins__": {}, **names}
+    exec(compile(source, "<regdb bucket>", "exec"), space)  # made of checked nodes only, see expressions
     decide: Decide = space["decide"]
     return decide
 

@@ -47,10 +47,7 @@ class Tangle:
     def _effective(self, index: int, holding: dict[int, Truth], effective: dict[int, Truth], values: Values) -> Truth:
         if index in effective:
             return effective[index]
-        if index in self._waits:
-            truth = self.bucket.condition(index)(values)
-        else:
-            truth = holding.get(index, False)
+        truth = self.bucket.condition(index)(values) if index in self._waits else holding.get(index, False)
         if truth is not False:
             for other in self.parts[index].defeaters:
                 defeated = self._effective(other, holding, effective, values)

@@ -119,5 +119,6 @@ def _plain(fact: Fact, value: Any) -> Value:
     if isinstance(value, bool) is (fact.kind == "boolean"):
         for kind in _CLASSES[fact.kind]:
             if isinstance(value, kind):
-                return value if value.__class__ is kind else kind(value)  # type: ignore[no-any-return]
+                plain: Value = value if value.__class__ is kind else kind(value)  # type: ignore[assignment]
+                return plain
     raise FactError(f"{fact.name} is a {fact.kind} and cannot be {value!r}")
