@@ -1,4 +1,4 @@
-"""The one module that knows the order of the passes: read, resolve, precedence, authority, lower."""
+"""The one module that knows the order of the passes: read, resolve, precedence, authority, law tests, lower."""
 
 from __future__ import annotations
 
@@ -10,6 +10,7 @@ from regdb.regulation import Regulation
 from regdb_compiler.authority import Authority
 from regdb_compiler.corpus import Corpus, read_corpus
 from regdb_compiler.diagnostics import Diagnostic, in_order
+from regdb_compiler.law_tests.read import LawTest, check_tests, read_tests
 from regdb_compiler.lower import Row, lower
 from regdb_compiler.precedence import Targets, find_targets
 from regdb_compiler.resolve import Resolution, resolve
@@ -25,6 +26,7 @@ class Build:
     targets: Targets
     authority: Authority
     diagnostics: tuple[Diagnostic, ...]
+    law_tests: tuple[LawTest, ...] = ()
 
     @cached_property
     def rows(self) -> tuple[Row, ...]:
@@ -46,5 +48,6 @@ def build(codes: Path) -> Build:
     resolution = resolve(corpus)
     targets = find_targets(corpus)
     authority = Authority(resolution, targets)
-    found = (*corpus.diagnostics, *resolution.diagnostics, *targets.problems, *check_timeline(corpus), *authority.check())
-    return Build(corpus, resolution, targets, authority, in_order(found))
+    tests = read_tests(corpus)
+    found = (*corpus.diagnostics, *resolution.diagnostics, *targets.problems, *check_timeline(corpus), *authority.check(), *check_tests(tests))
+    return Build(corpus, resolution, targets, authority, in_order(found), tests)
