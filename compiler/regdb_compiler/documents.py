@@ -155,14 +155,14 @@ class Regulation(Document):
 
     id: Slug
     subdivision: Subdivision | None = None
+    exception_to: Words = ()
+    overrides: Words = ()
+    authority: str = ""
     condition: Condition
     result: str
     legality: Boolean
     attributes: dict[str, str] = Field(default_factory=dict)
     states: States = States()
-    exception_to: Words = ()
-    overrides: Words = ()
-    authority: str = ""
     requires_sign: str = ""
     applies_to: Words = ()
     force: Force | None = None

@@ -179,13 +179,14 @@ def _model_at(model: Any, path: Path) -> Any:
         if not (isinstance(model, type) and issubclass(model, BaseModel)):
             continue
         field = next((f for name, f in model.model_fields.items() if (f.alias or name) == step), None)
-        model = _inner_model(field.annotation) if field is not None else None
+        model = inner_model(field.annotation) if field is not None else None
     return model
 
 
-def _inner_model(annotation: Any) -> Any:
+def inner_model(annotation: Any) -> Any:
+    """The document model inside an annotation (of a list, a dictionary, an optional), or None."""
     if isinstance(annotation, type) and issubclass(annotation, BaseModel):
         return annotation
-    return next((found for part in get_args(annotation) if (found := _inner_model(part)) is not None), None)
+    return next((found for part in get_args(annotation) if (found := inner_model(part)) is not None), None)
 
 

@@ -1,0 +1,46 @@
+# Every target sets up what it needs in a fresh clone with Python 3.11, venv and make.
+PYTHON ?= python3
+VENV := .venv
+BIN := $(VENV)/bin
+READY := $(VENV)/.ready
+
+.PHONY: demo test check bench docs quick clean help
+
+help:
+	@echo "make demo    lint, test and compile the shipped codes, and decide the paper's situations"
+	@echo "make test    run every test"
+	@echo "make check   style, types, layers, regdb lint and regdb test on codes/"
+	@echo "make bench   measure, in ratios of one run, against the marks"
+	@echo "make docs    write the generated pages of docs/reference"
+
+$(READY): pyproject.toml
+	$(PYTHON) -c 'import sys; sys.exit("regdb needs Python 3.11 or newer, this is %d.%d" % sys.version_info[:2] if sys.version_info < (3, 11) else 0)'
+	test -x $(BIN)/python || $(PYTHON) -m venv $(VENV)
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check --upgrade 'pip>=25.1'
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check --editable '.[all]' --group dev
+	@touch $(READY)
+
+demo: $(READY)
+	$(BIN)/regdb demo -o out
+
+test: $(READY)
+	$(BIN)/python -m pytest
+
+quick: $(READY)
+	$(BIN)/ruff check .
+	$(BIN)/mypy
+	$(BIN)/lint-imports
+
+check: quick
+	$(BIN)/regdb lint --codes codes
+	$(BIN)/regdb fmt --check --codes codes
+	$(BIN)/regdb test --codes codes -q
+
+bench: $(READY)
+	$(BIN)/python bench/run.py
+
+docs: $(READY)
+	$(BIN)/python docs/generate.py
+
+clean:
+	rm -rf $(VENV) out dist .mypy_cache .ruff_cache .pytest_cache .import_linter_cache
