@@ -99,10 +99,10 @@ class _Build(Transformer[Token, Raw]):
     """Raw nodes straight from the parser's reductions."""
 
     def either(self, *parts: Raw) -> Raw:
-        return RawJoin("or", parts)
+        return RawJoin("or", parts) if len(parts) > 1 else parts[0]
 
     def both(self, *parts: Raw) -> Raw:
-        return RawJoin("and", parts)
+        return RawJoin("and", parts) if len(parts) > 1 else parts[0]
 
     def negated(self, part: Raw) -> Raw:
         return RawNot(part)
