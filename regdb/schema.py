@@ -120,6 +120,7 @@ INDEXES = {
 
 SEARCH_TABLE = "regulation_search"
 SEARCH_COLUMNS = ("id", "citation", "title", "condition", "result", "text")
+"""Columns of the full-text index. It keeps no copy of the words: it reads them from the view `search_source`."""
 
 VIEWS = {
     "paper_table": """
@@ -143,6 +144,9 @@ FROM transition t JOIN regulation r
 SELECT r.id, r.citation, r.jurisdiction, l.attribute, l.value, l.unit, l.si, r.force, r.condition, r.effective, r.until
 FROM regulation_limit l JOIN regulation r ON r.key = l.regulation
 WHERE l.attribute IN ('max_speed', 'min_speed') ORDER BY r.key, l.position""",
+    "search_source": """
+SELECT r.key, r.id, r.citation, r.title, r.condition, r.result, v.text
+FROM regulation r JOIN section_version v ON v.key = r.section_version""",
     "overrides_of": """
 SELECT t.target AS overridden, r.id AS overriding, t.kind, r.citation, r.jurisdiction, r.authority, r.effective, r.until
 FROM regulation_target t JOIN regulation r ON r.key = t.regulation ORDER BY t.target, r.key""",
