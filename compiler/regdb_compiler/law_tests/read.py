@@ -72,9 +72,9 @@ class _Reading:
         place = self.key_place(*path) if key else self.written.place(*self.steps, *path)
         self.problems.append(Diagnostic("R801", "unreadable-scene", "error", text, place, note=note, law=self.law))
 
-    def key_place(self, *path: str) -> Place:
+    def key_place(self, *path: str | int) -> Place:
         inside = node_at(self.written.node, (*self.steps, *path[:-1]))
-        return inside.key_place(path[-1]) if isinstance(inside, Mapping) else inside.place
+        return inside.key_place(str(path[-1])) if isinstance(inside, Mapping) else inside.place
 
 
 def read_tests(corpus: Corpus) -> tuple[LawTest, ...]:
