@@ -14,6 +14,7 @@ from regdb_compiler.law_tests.read import LawTest, check_tests, read_tests
 from regdb_compiler.lower import Row, lower
 from regdb_compiler.precedence import Targets, find_targets
 from regdb_compiler.resolve import Resolution, resolve
+from regdb_compiler.source import collector_paused
 from regdb_compiler.timeline import check_timeline
 
 
@@ -44,6 +45,11 @@ class Build:
 
 def build(codes: Path) -> Build:
     """Read and resolve a codes folder. Never raises for what is in it."""
+    with collector_paused():
+        return _build(codes)
+
+
+def _build(codes: Path) -> Build:
     corpus = read_corpus(codes)
     resolution = resolve(corpus)
     targets = find_targets(corpus)

@@ -112,8 +112,15 @@ def _names(model: Any) -> Iterable[str]:
 
 
 def _commented(node: CommentedMap) -> bool:
-    own = node.ca.comment is not None and node.ca.comment[1]
-    return bool(own) or any(any(part for part in parts) for parts in node.ca.items.values())
+    """Whether a comment stands between the keys; blank lines do not count."""
+    held: list[Any] = [node.ca.comment, *node.ca.items.values()]
+    while held:
+        part = held.pop()
+        if isinstance(part, list):
+            held += part
+        elif part is not None and "#" in part.value:
+            return True
+    return False
 
 
 def _tidy(node: Any) -> None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import datetime
+import json
 import re
 from dataclasses import dataclass
 from pathlib import Path
@@ -47,7 +48,7 @@ def section_scaffold(corpus: Corpus, citation: str, title: str, topic: str) -> S
         raise FrontError(f"{path} is there already")
     fact = next((item.name for item in corpus.vocabulary if item.kind == "boolean" and item.source == "perception"), "sign.stop")
     text = _render(
-        "section.yaml.j2", section=cited.section, title=title or f"Section {cited.section}", location="Division, Chapter, Article",
+        "section.yaml.j2", section=cited.section, title=json.dumps(title or f"Section {cited.section}", ensure_ascii=False), location="Division, Chapter, Article",
         topic=topic or f"section-{re.sub(r'[^0-9a-z]+', '-', cited.section)}", today=datetime.date.today().isoformat(),
         effective=FIRST_DAY, fact=fact, example=fact, current="lane_following", next="lane_following",
         current_state="lane_following.go_straight", next_state="lane_following.go_straight",

@@ -71,7 +71,7 @@ def parse_text(text: str, path: str) -> SourceFile:
     if len(text) > MAX_BYTES:
         return _unread(path, "R010", f"the file is larger than {MAX_BYTES // 1_000_000} MB")
     lines = Lines(path, text)
-    with _collector_paused():
+    with collector_paused():
         tree, problems, whole = _read(lines)
     if not problems and (tree is None or (isinstance(tree, Scalar) and tree.plain and not tree.text)):
         return _unread(path, "R003", "the file is empty", text, "write the section, or delete the file")
@@ -120,7 +120,7 @@ def _unread(path: str, code: str, message: str, text: str = "", advice: str = ""
 
 
 @contextmanager
-def _collector_paused() -> Iterator[None]:
+def collector_paused() -> Iterator[None]:
     """Reading makes many objects and no garbage; with the cycle collector running it takes nearly twice as long."""
     running = gc.isenabled()
     gc.disable()

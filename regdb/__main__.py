@@ -1,0 +1,5 @@
+"""`python -m regdb`."""
+
+from regdb.cli import main
+
+main()
