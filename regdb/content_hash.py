@@ -5,37 +5,78 @@ from __future__ import annotations
 import hashlib
 import json
 import sqlite3
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from typing import Any
 
 from regdb.schema import TABLES, USER_VERSION
 
-_BATCH = 2000
 _META, _OWN_KEY = "regdb_meta", "content_hash"
 
 
-def content_hash(connection: sqlite3.Connection) -> str:
-    """Hex SHA-256 of all tables of the schema in the order of their primary keys, `regdb_meta` without the hash itself.
+@dataclass(frozen=True, slots=True)
+class Table:
+    """A table read whole, column by column, its rows in the order of the primary key."""
 
-    Search tables, views and indexes are derived and do not count. Raises sqlite3.Error where a table is missing or unreadable.
+    columns: dict[str, tuple[Any, ...]]
+
+    def __getitem__(self, column: str) -> tuple[Any, ...]:
+        """The values of one column. Raises KeyError."""
+        return self.columns[column]
+
+    def select(self, *columns: str) -> Iterator[tuple[Any, ...]]:
+        """These columns of every row. Raises KeyError for one that is not there."""
+        return zip(*[self.columns[column] for column in columns], strict=True)
+
+
+def read_tables(connection: sqlite3.Connection) -> dict[str, Table]:
+    """Every table of the schema. Raises sqlite3.Error where one is missing or unreadable."""
+    return {name: _read(connection, name) for name in TABLES}
+
+
+def _read(connection: sqlite3.Connection, name: str) -> Table:
+    info = connection.execute(f'PRAGMA table_info("{name}")').fetchall()
+    if not info:
+        raise sqlite3.DatabaseError(f"no such table: {name}")
+    keys = [f'"{column}"' for _, column in sorted((row[5], row[1]) for row in info if row[5])] or ["rowid"]
+    names = [row[1] for row in info]
+    where = f" WHERE key <> '{_OWN_KEY}'" if name == _META else ""
+    chosen = ", ".join(f'"{column}"' for column in names)
+    rows = connection.execute(f'SELECT {chosen} FROM "{name}"{where} ORDER BY {", ".join(keys)}').fetchall()
+    return Table(dict(zip(names, zip(*rows, strict=True) if rows else [()] * len(names), strict=True)))
+
+
+def hash_tables(tables: Mapping[str, Table]) -> str:
+    """Hex SHA-256 over every table and column by name: texts joined by NUL, other columns as JSON with shortest floats.
+
+    The hash itself (in `regdb_meta`) is left out by `read_tables`; search tables, views and indexes are derived and do not count.
     """
     digest = hashlib.sha256(f"regdb {USER_VERSION}\n".encode())
-    for table in TABLES:
-        columns, keys = _columns(connection, table)
-        digest.update(_line([table, *columns]))
-        where = f" WHERE key <> '{_OWN_KEY}'" if table == _META else ""
-        chosen = ", ".join(f'"{column}"' for column in columns)
-        cursor = connection.execute(f'SELECT {chosen} FROM "{table}"{where} ORDER BY {", ".join(keys)}')
-        while rows := cursor.fetchmany(_BATCH):
-            digest.update(_line(rows))
+    for name, table in tables.items():
+        for column, values in table.columns.items():
+            kind, content = _content(values)
+            digest.update(f"\n{name}.{column} {kind} {len(values)} {len(content)}\n".encode())
+            digest.update(content)
     return digest.hexdigest()
 
 
-def _columns(connection: sqlite3.Connection, table: str) -> tuple[list[str], list[str]]:
-    """Column names in order, and the columns of the primary key as SQL, in its order."""
-    info = connection.execute(f'PRAGMA table_info("{table}")').fetchall()
-    keys = sorted((row[5], row[1]) for row in info if row[5])
-    return [row[1] for row in info], [f'"{name}"' for _, name in keys] or ["rowid"]
+def _content(values: tuple[Any, ...]) -> tuple[str, bytes]:
+    """A column as bytes that stand for no other column."""
+    try:
+        joined = "\0".join(values)
+        if joined.count("\0") == max(len(values) - 1, 0):
+            return "text", joined.encode("utf-8", "surrogatepass")
+    except TypeError:
+        pass
+    return "json", json.dumps(values, ensure_ascii=True, separators=(",", ":")).encode("ascii")
 
 
-def _line(rows: object) -> bytes:
-    """JSON in ASCII with shortest floats: the same bytes on every Python and every platform."""
-    return json.dumps(rows, ensure_ascii=True, separators=(",", ":")).encode("ascii") + b"\n"
+def content_hash(connection: sqlite3.Connection) -> str:
+    """The hash of an open database (see `hash_tables`). Raises sqlite3.Error."""
+    return hash_tables(read_tables(connection))
+
+
+def stored_hash(connection: sqlite3.Connection) -> str:
+    """The hash the database carries, empty where it carries none. Raises sqlite3.Error."""
+    row = connection.execute(f"SELECT value FROM {_META} WHERE key = '{_OWN_KEY}'").fetchone()
+    return str(row[0]) if row else ""

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from datetime import date
 from pathlib import Path
 
-from regdb.content_hash import content_hash
+from regdb.content_hash import hash_tables, read_tables, stored_hash
 from regdb.jurisdiction import JurisdictionTree
 from regdb.regulation import Regulation
 from regdb.schema import APPLICATION_ID, MAJOR
@@ -62,12 +62,13 @@ class RegulationDatabase:
         _check_magic(file)
         with _reading(file) as connection, _collector_off():
             _check_identity(connection, file)
-            meta = read_meta(connection)
-            if content_hash(connection) != meta.get("content_hash"):
+            tables = read_tables(connection)
+            meta = read_meta(tables) | {"content_hash": stored_hash(connection)}
+            if hash_tables(tables) != meta["content_hash"]:
                 raise DatabaseDamaged(f"{file} has been altered since it was compiled: its content hash does not match; compile it again")
-            vocabulary = read_vocabulary(connection)
-            machine, tree = read_machine(connection), read_tree(connection)
-            found = cls(vocabulary, machine, tree, read_regulations(connection, vocabulary), meta, file)
+            vocabulary = read_vocabulary(tables)
+            machine, tree = read_machine(tables), read_tree(tables)
+            found = cls(vocabulary, machine, tree, read_regulations(tables, vocabulary), meta, file)
         found._stamp = stamp
         return found
 

@@ -21,7 +21,7 @@ from regdb_runtime.index.slots import FactTable, PreparedScene
 from regdb_runtime.verdict import Circumstances, Verdict
 
 BITMAPS_BEYOND = 256
-"""Rules in a bucket up to which one generated function is faster than bitmaps (measured, bench/decide.py)."""
+"""Rules in a bucket up to which a function is generated: it is the faster answer, but takes 0.2 ms a rule to compile; bitmaps 0.04."""
 
 Day = datetime.date | str | int
 """A day as a date, ISO text, or proleptic Gregorian ordinal."""

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import datetime
 import json
-import sqlite3
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Mapping
 from functools import lru_cache
-from typing import Any
+from typing import Any, TypeVar
 
 from regdb.condition import TRUE
+from regdb.content_hash import Table
 from regdb.jurisdiction import Jurisdiction, JurisdictionError, JurisdictionTree
 from regdb.regulation import Limit, Regulation
 from regdb.states import State, StateMachine, SuperState
@@ -17,22 +17,28 @@ from regdb.vocabulary import KINDS, Assumption, Attribute, Fact, Value, Vocabula
 from regdb_runtime.errors import DatabaseDamaged
 from regdb_runtime.rows_conditions import ConditionReader
 
-_REGULATION = (
-    "key, id, citation, jurisdiction, legality, effective, until, when_tree, unless_tree, force, authority, title, topic, tags, "
-    "condition, result, quote, vagueness, vague_because, confidence"
-)
+_FACT = (
+    "name", "kind", "meaning", "source", "words", "unit", "assumed", "assumed_within", "assumed_because", "quiet", "phrases",
+    "confusables", "codes",
+)  # fmt: skip
+_JURISDICTION = ("id", "name", "kind", "parent", "status", "code", "short", "long", "territory", "road_owners", "source")
+_SUPER_STATE = ("name", "meaning", "prompt", "next", "entry", "exit", "aliases", "from_anywhere", "initial")
+_STATE = ("id", "super_state", "name", "meaning", "aliases", "extension", "prompt")
 
 
-def read_meta(connection: sqlite3.Connection) -> dict[str, str]:
+_Item = TypeVar("_Item")
+Tables = Mapping[str, Table]
+
+
+def read_meta(tables: Tables) -> dict[str, str]:
     """What the database says of itself."""
-    return dict(connection.execute("SELECT key, value FROM regdb_meta"))
+    return dict(tables["regdb_meta"].select("key", "value"))
 
 
-def read_vocabulary(connection: sqlite3.Connection) -> Vocabulary:
+def read_vocabulary(tables: Tables) -> Vocabulary:
     """Every fact and attribute. Raises DatabaseDamaged."""
-    columns = "name, kind, meaning, source, words, unit, assumed, assumed_within, assumed_because, quiet, phrases, confusables, codes"
-    facts = [_fact(*row) for row in connection.execute(f"SELECT {columns} FROM fact ORDER BY rowid")]
-    attributes = connection.execute("SELECT name, kind, fact, direction, meaning FROM attribute ORDER BY rowid")
+    facts = [_fact(*row) for row in tables["fact"].select(*_FACT)]
+    attributes = tables["attribute"].select("name", "kind", "fact", "direction", "meaning")
     return Vocabulary(facts, (Attribute(*row) for row in attributes))
 
 
@@ -62,13 +68,11 @@ def _value(name: str, kind: str, text: str) -> Value:
     return found
 
 
-def read_tree(connection: sqlite3.Connection) -> JurisdictionTree:
+def read_tree(tables: Tables) -> JurisdictionTree:
     """The tree of jurisdictions. Raises DatabaseDamaged."""
-    columns = "id, name, kind, parent, status, code, short, long, territory, road_owners, source"
-    rows = connection.execute(f"SELECT {columns} FROM jurisdiction ORDER BY rowid")
     items = [
         Jurisdiction(place, name, kind, parent, status, code, short, long, tuple(json.loads(land)), tuple(json.loads(owners)), source)
-        for place, name, kind, parent, status, code, short, long, land, owners, source in rows
+        for place, name, kind, parent, status, code, short, long, land, owners, source in tables["jurisdiction"].select(*_JURISDICTION)
     ]
     try:
         return JurisdictionTree(items)
@@ -76,77 +80,88 @@ def read_tree(connection: sqlite3.Connection) -> JurisdictionTree:
         raise DatabaseDamaged(str(error)) from error
 
 
-def read_machine(connection: sqlite3.Connection) -> StateMachine:
+def read_machine(tables: Tables) -> StateMachine:
     """The state machine; a state's `next` are the ids of the full transition relation. Raises DatabaseDamaged."""
+    rows = list(_placed(tables["state"], _STATE))
+    places = {row[0]: place for place, row in enumerate(rows)}
     following: dict[str, list[str]] = {}
-    for current, after in connection.execute("SELECT current, next FROM transition ORDER BY rowid"):
+    for current, after in tables["transition"].select("current", "next"):
         following.setdefault(current, []).append(after)
-    states = [
-        State(super_state, name, meaning, tuple(json.loads(aliases)), bool(extension), prompt, tuple(following.get(state_id, ())))
-        for state_id, super_state, name, meaning, aliases, extension, prompt in connection.execute(
-            "SELECT id, super_state, name, meaning, aliases, extension, prompt FROM state ORDER BY position"
-        )
-    ]
-    rows = connection.execute(
-        "SELECT name, meaning, prompt, next, entry, exit, aliases, from_anywhere, initial FROM super_state ORDER BY position"
-    ).fetchall()
+    states = []
+    for state_id, super_state, name, meaning, aliases, extension, prompt in rows:
+        after = tuple(sorted(following.get(state_id, ()), key=places.__getitem__))
+        states.append(State(super_state, name, meaning, tuple(json.loads(aliases)), bool(extension), prompt, after))
     if not rows:
         raise DatabaseDamaged("the database has no states")
-    supers = [
-        SuperState(name, meaning, prompt, tuple(json.loads(after)), entry, leave, tuple(json.loads(aliases)), bool(anywhere))
-        for name, meaning, prompt, after, entry, leave, aliases, anywhere, _ in rows
-    ]
-    return StateMachine(supers, states, next((row[0] for row in rows if row[8]), rows[0][0]))
+    supers, initial = _super_states(tables)
+    return StateMachine(supers, states, initial)
 
 
-def read_regulations(connection: sqlite3.Connection, vocabulary: Vocabulary) -> tuple[Regulation, ...]:
+def _super_states(tables: Tables) -> tuple[list[SuperState], str]:
+    found, initial = [], ""
+    for name, meaning, prompt, after, entry, leave, aliases, anywhere, first in _placed(tables["super_state"], _SUPER_STATE):
+        words = tuple(json.loads(after)), entry, leave, tuple(json.loads(aliases))
+        found.append(SuperState(name, meaning, prompt, *words, bool(anywhere)))
+        initial = name if first or not initial else initial
+    return found, initial
+
+
+def _placed(table: Table, columns: tuple[str, ...]) -> Iterator[tuple[Any, ...]]:
+    """These columns of every row, in the order of the column `position`."""
+    return (row[1:] for row in sorted(table.select("position", *columns), key=lambda row: row[0]))
+
+
+def read_regulations(tables: Tables, vocabulary: Vocabulary) -> tuple[Regulation, ...]:
     """Every regulation in every version, in the order of the rows. Raises DatabaseDamaged."""
-    rows = connection.execute(f"SELECT {_REGULATION} FROM regulation ORDER BY key").fetchall()
+    rows = tables["regulation"]
     reader = ConditionReader(vocabulary.facts)
-    whens = reader.trees([row[7] for row in rows])
-    unlesses = reader.trees([row[8] for row in rows])
-    limits = _limits(connection, reader)
-    states = _states(connection)
-    targets = _grouped(connection.execute("SELECT regulation, target, kind FROM regulation_target ORDER BY regulation, position"))
-    found = []
-    for row, when, unless in zip(rows, whens, unlesses, strict=True):
-        key = row[0]
-        aimed = targets.get(key, ())
-        found.append(
-            Regulation(
-                row[1], row[2], row[3], bool(row[4]), day_of(row[5]), day_of(row[6]), TRUE if when is None else when, unless,
-                tuple(limits.get(key, ())), row[9], states.get((key, "current")), states.get((key, "next")),
-                tuple(dict.fromkeys([target for target, _ in aimed])), tuple([target for target, kind in aimed if kind == "overrides"]),
-                row[10], row[11], row[12], _words(row[13]), *row[14:],
-            )
-        )  # fmt: skip
-    return tuple(found)
+    keys = rows["key"]
+    whens = [TRUE if tree is None else tree for tree in reader.trees(rows["when_tree"])]
+    limits, states = _limits(tables, reader), _states(tables)
+    pairs = tables["regulation_target"].select("regulation", "target")
+    aimed: dict[int, tuple[str, ...]] = _grouped((key, target) for key, target in pairs)
+    named = tables["regulation_target"].select("regulation", "target", "kind")
+    overridden: dict[int, tuple[str, ...]] = _grouped((key, target) for key, target, kind in named if kind == "overrides")
+    current, following = states["current"], states["next"]
+    columns = (
+        rows["id"], rows["citation"], rows["jurisdiction"], map(bool, rows["legality"]), map(day_of, rows["effective"]),
+        map(day_of, rows["until"]), whens, reader.trees(rows["unless_tree"]), [limits.get(key, ()) for key in keys], rows["force"],
+        map(current.get, keys), map(following.get, keys), [aimed.get(key, ()) for key in keys],
+        [overridden.get(key, ()) for key in keys], rows["authority"], rows["title"], rows["topic"], map(_words, rows["tags"]),
+        rows["condition"], rows["result"], rows["quote"], rows["vagueness"], rows["vague_because"], rows["confidence"],
+    )  # fmt: skip
+    return tuple(map(Regulation, *columns))
 
 
-def _limits(connection: sqlite3.Connection, reader: ConditionReader) -> dict[int, list[Limit]]:
-    rows = connection.execute(
-        "SELECT regulation, attribute, fact, direction, bound, unit, law_text FROM regulation_limit ORDER BY regulation, position"
-    ).fetchall()
-    found: dict[int, list[Limit]] = {}
-    for row, bound in zip(rows, reader.linears([row[4] for row in rows]), strict=True):
-        found.setdefault(row[0], []).append(Limit(row[1], row[2], row[3], bound, row[5], row[6]))
-    return found
+def _limits(tables: Tables, reader: ConditionReader) -> dict[int, tuple[Limit, ...]]:
+    rows = tables["regulation_limit"]
+    bounds = reader.linears(rows["bound"])
+    limits = map(Limit, rows["attribute"], rows["fact"], rows["direction"], bounds, rows["unit"], rows["law_text"])
+    return _grouped(zip(rows["regulation"], limits, strict=True))
 
 
-def _states(connection: sqlite3.Connection) -> dict[tuple[int, str], frozenset[str]]:
-    """(regulation, role) -> state ids; equal sets are one object."""
-    sets: dict[tuple[int, str], list[str]] = {}
-    for key, role, state in connection.execute("SELECT regulation, role, state FROM regulation_state ORDER BY regulation, role, state"):
-        sets.setdefault((key, role), []).append(state)
+def _states(tables: Tables) -> dict[str, dict[int, frozenset[str]]]:
+    """Role -> regulation -> state ids; equal sets are one object. Rows come in that order, so each set is one run of rows."""
+    found: dict[str, dict[int, frozenset[str]]] = {"current": {}, "next": {}}
     shared: dict[tuple[str, ...], frozenset[str]] = {}
-    return {place: shared.setdefault(tuple(ids), frozenset(ids)) for place, ids in sets.items()}
-
-
-def _grouped(rows: Iterable[tuple[Any, ...]]) -> dict[int, list[tuple[Any, ...]]]:
-    found: dict[int, list[tuple[Any, ...]]] = {}
-    for row in rows:
-        found.setdefault(row[0], []).append(row[1:])
+    run: list[str] = []
+    last_key, last_role = -1, ""
+    for key, role, state in (*tables["regulation_state"].select("regulation", "role", "state"), (-1, "", "")):
+        if key != last_key or role != last_role:
+            if run:
+                ids = tuple(run)
+                found[last_role][last_key] = shared.get(ids) or shared.setdefault(ids, frozenset(ids))
+            run, last_key, last_role = [], key, role
+        run.append(state)
     return found
+
+
+def _grouped(rows: Iterable[tuple[int, _Item]]) -> dict[int, tuple[_Item, ...]]:
+    """Regulation -> what its rows hold, in their order."""
+    found: dict[int, list[_Item]] = {}
+    for key, item in rows:
+        found.setdefault(key, []).append(item)
+    return {key: tuple(items) for key, items in found.items()}
 
 
 @lru_cache(maxsize=4096)

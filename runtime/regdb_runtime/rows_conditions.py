@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Callable, Collection, Sequence
+from collections.abc import Collection, Sequence
 from typing import Any
 
 from regdb.condition import And, Const, Linear, Literal, Node, Not, Or, literal_facts
@@ -17,11 +17,6 @@ class ConditionReader:
     def __init__(self, facts: Collection[str]) -> None:
         self._facts = facts
         self._literals: dict[Any, Literal] = {}
-        self._operators: dict[str, Callable[[Any], Node]] = {
-            "and": lambda data: And(tuple([self._node(part) for part in data[1:]])),
-            "or": lambda data: Or(tuple([self._node(part) for part in data[1:]])),
-            "not": lambda data: Not(self._node(data[1])) if len(data) == 2 else self._damaged(data),
-        }
 
     def trees(self, texts: Sequence[str | None]) -> list[Node | None]:
         """One tree per text, None where the text is None. Raises DatabaseDamaged for what is no tree or reads no known fact."""
@@ -47,30 +42,34 @@ class ConditionReader:
             raise DatabaseDamaged(f"the condition {json.dumps(data)[:200]} is no condition tree") from error
 
     def _node(self, data: Any) -> Node:
-        operator = self._operators.get(data[0])
-        if operator is not None:
-            return operator(data)
-        key = _key(data)
-        found = self._literals.get(key)
-        if found is None:
-            found = self._literals[key] = self._literal(data)
-        return found
+        kind = data[0]
+        if kind == "is" or kind == "known":
+            key: Any = (kind, data[1])
+        elif kind == "and" or kind == "or":
+            return (And if kind == "and" else Or)(tuple([self._node(part) for part in data[1:]]))
+        elif kind == "not" and len(data) == 2:
+            return Not(self._node(data[1]))
+        elif kind == "in":
+            key = (kind, data[1], *data[2])
+        elif kind == "cmp":
+            left, right = data[2], data[3]
+            key = (data[1], left[0], *map(tuple, left[1]), right[0], *map(tuple, right[1]), data[4], data[5])
+        else:
+            key = tuple(data), data[1] is True
+        return self._literals.get(key) or self._literals.setdefault(key, self._literal(data))
 
     def _literal(self, data: Any) -> Literal:
         node = from_data(data)
         if isinstance(node, (And, Or, Not)):
-            self._damaged(data)
+            raise ValueError(data)
         if not isinstance(node, Const):
-            for fact in literal_facts(node):  # type: ignore[arg-type]  # operators are refused above
+            for fact in literal_facts(node):
                 self._check(fact)
-        return node  # type: ignore[return-value]
+        return node
 
     def _check(self, fact: str) -> None:
         if fact not in self._facts:
             raise DatabaseDamaged(f"a condition reads the fact {fact!r}, which the vocabulary of this database lacks")
-
-    def _damaged(self, data: Any) -> Any:
-        raise DatabaseDamaged(f"the condition {json.dumps(data)[:200]} is no condition tree")
 
 
 def _parse(texts: Sequence[str | None]) -> list[Any]:
@@ -89,15 +88,3 @@ def _parse_one(text: str | None) -> Any:
     except ValueError as error:
         raise DatabaseDamaged(f"{text[:200] if text else text!r} is not JSON") from error
 
-
-def _key(data: Any) -> Any:
-    """A literal's data as something that can be looked up; the commonest shapes without a detour."""
-    kind = data[0]
-    if kind == "in":
-        return (kind, data[1], *data[2])
-    if kind == "cmp":
-        left, right = data[2], data[3]
-        return (data[1], left[0], *map(tuple, left[1]), right[0], *map(tuple, right[1]), data[4], data[5])
-    if kind == "const":
-        return (kind, data[1] is True, type(data[1]))
-    return tuple(data)

@@ -7,18 +7,16 @@ or ask whether something is known are left to the exact functions, which have th
 from __future__ import annotations
 
 from bisect import bisect_left
-from collections.abc import Callable
-from typing import Any
+from collections.abc import Callable, Iterator
 
 from regdb.condition import And, Compare, Const, Is, Linear, Literal, Node, Not, OneOf, Or, Within, literals
 from regdb.truth import Truth, conjoin, disjoin, negate
-from regdb_runtime.index.bucket import Bucket, Decide
-from regdb_runtime.index.conjuncts import reads_only
+from regdb_runtime.index.bucket import Bucket, Decide, Found
+from regdb_runtime.index.conjuncts import Conjuncts, reads_only
 from regdb_runtime.index.settle import Tangle
 from regdb_runtime.index.slots import Values
 
 _Key = bool | str | int | None
-_Test = Callable[[Any], Truth]
 
 
 class FactBins:
@@ -39,6 +37,14 @@ class FactBins:
         words: set[_Key] = {word for _, node in self.parts for literal in literals(node) for word in _words(literal)}
         found = {word: self._possible(word, full) for word in (*words, True, False, None)}
         return [], found, self._possible("", full)
+
+    def doubt(self) -> int:
+        """The rules that an unknown value leaves open."""
+        found = 0
+        for bit, node in self.parts:
+            if _truth(node, None) is None:
+                found |= 1 << bit
+        return found
 
     def _possible(self, value: _Key, full: int) -> int:
         for bit, node in self.parts:
@@ -159,37 +165,55 @@ def _truth(node: Node, value: _Key) -> Truth:
     raise ValueError(f"no bin for {node!r}")
 
 
+class _Masks:
+    """Which bits can be answered how: `plain` rules are broken or undecided by their bits alone, `whole` ones need no exact
+    function, the rest are looked at one by one."""
+
+    def __init__(self, bucket: Bucket) -> None:
+        self.order = [part.index for part in bucket.candidates]
+        self.full = (1 << len(self.order)) - 1
+        self.whole = self.plain = 0
+        self.facts: dict[str, FactBins] = {}
+        for bit, part in enumerate(bucket.candidates):
+            if self._bin(bit, bucket.conjuncts[part.index], bucket):
+                self.whole |= 1 << bit
+                if part.breakable and not (part.tangled or part.limiting or part.rule.limits):
+                    self.plain |= 1 << bit
+
+    def _bin(self, bit: int, parts: Conjuncts, bucket: Bucket) -> bool:
+        """File the parts of a rule under their facts; whether that was all of them."""
+        whole = True
+        for node in parts:
+            fact = reads_only(node)
+            if fact is not None and can_bin(node) and fact in bucket.table.slots:
+                self.facts.setdefault(fact, FactBins(bucket.table.slots[fact])).add(bit, node)
+            else:
+                whole = False
+        return whole
+
+
 def bitmaps(bucket: Bucket) -> Decide:
-    """Decide a large bucket: AND the bitmaps, then settle the few candidates exactly."""
-    order = [part.index for part in bucket.candidates]
-    full = (1 << len(order)) - 1
-    worded, numbered = _tables(bucket, order, full)
-    exact = [bucket.condition(index) for index in order]
+    """Decide a large bucket: AND the bitmaps, then settle what they leave open exactly."""
+    masks = _Masks(bucket)
+    find = _finder(masks)
+    order, whole, plain = masks.order, masks.whole, masks.plain
+    others = ~plain
     tangle = Tangle(bucket)
     tangled = frozenset(part.index for part in bucket.candidates if part.tangled)
+    exact = {bit: bucket.condition(index) for bit, index in enumerate(order) if not whole >> bit & 1}
     file, settle, finish = tangle.file, tangle.settle, bucket.finish
 
-    def decide(values: Values) -> Any:
-        left = full
-        for slot, table, other in worded:
-            left &= table.get(values[slot], other)
-        for slot, cuts, table in numbered:
-            value = values[slot]
-            if value is None:
-                left &= table[None]
-            else:
-                place = bisect_left(cuts, value)
-                left &= table[2 * place + 1 if place < len(cuts) and cuts[place] == value else 2 * place]
-        broken: list[int] = []
-        undecided: list[int] = []
+    def decide(values: Values) -> Found:
+        left, doubtful = find(values)
+        simple, rest = left & plain, left & others
+        broken = [order[bit] for bit in set_bits(simple & ~doubtful)] if simple else []
+        undecided = [order[bit] for bit in set_bits(simple & doubtful)] if simple else []
         limiting: list[int] = []
         sure: list[int] = []
         maybe: list[int] = []
-        while left:
-            low = left & -left
-            left ^= low
-            bit = low.bit_length() - 1
-            truth = exact[bit](values)
+        for bit in set_bits(rest) if rest else ():
+            test = exact.get(bit)
+            truth = test(values) if test is not None else None if doubtful >> bit & 1 else True
             if truth is not False:
                 index = order[bit]
                 if index in tangled:
@@ -202,20 +226,41 @@ def bitmaps(bucket: Bucket) -> Decide:
     return decide
 
 
-def _tables(bucket: Bucket, order: list[int], full: int) -> tuple[list[Any], list[Any]]:
-    """Slots of words and truths with their tables, and slots of numbers with cut points and tables."""
-    facts: dict[str, FactBins] = {}
-    for bit, index in enumerate(order):
-        for node in bucket.conjuncts[index]:
-            fact = reads_only(node)
-            if fact is not None and can_bin(node) and fact in bucket.table.slots:
-                facts.setdefault(fact, FactBins(bucket.table.slots[fact])).add(bit, node)
-    worded: list[Any] = []
-    numbered: list[Any] = []
-    for bins in facts.values():
-        cuts, table, other = bins.tables(full)
+def _finder(masks: _Masks) -> Callable[[Values], tuple[int, int]]:
+    """The function from values to the possible rules, and the rules that read something unknown."""
+    worded, numbered = [], []
+    for bins in masks.facts.values():
+        cuts, table, other = bins.tables(masks.full)
         if cuts:
-            numbered.append((bins.slot, cuts, table))
+            numbered.append((bins.slot, cuts, table, bins.doubt()))
         else:
-            worded.append((bins.slot, table, other))
-    return worded, numbered
+            worded.append((bins.slot, table, other, bins.doubt()))
+    full = masks.full
+
+    def find(values: Values) -> tuple[int, int]:
+        left, doubtful = full, 0
+        for slot, table, other, doubt in worded:
+            value = values[slot]
+            left &= table.get(value, other)
+            if value is None:
+                doubtful |= doubt
+        for slot, cuts, table, doubt in numbered:
+            value = values[slot]
+            if value is None:
+                left &= table[None]
+                doubtful |= doubt
+            else:
+                place = bisect_left(cuts, value)
+                left &= table[2 * place + 1 if place < len(cuts) and cuts[place] == value else 2 * place]
+        return left, doubtful
+
+    return find
+
+
+def set_bits(mask: int) -> Iterator[int]:
+    """The places of the ones, ascending."""
+    digits = bin(mask)[:1:-1]
+    place = digits.find("1")
+    while place >= 0:
+        yield place
+        place = digits.find("1", place + 1)

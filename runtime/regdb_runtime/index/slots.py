@@ -11,15 +11,10 @@ from regdb.vocabulary import Fact, FactError, Value, Vocabulary
 Values = list[Any]
 """One value per fact (None is unknown); the last two entries are the facts observed by the scene and told by the plan."""
 
-_CLASSES: dict[str, frozenset[type]] = {
-    "boolean": frozenset({bool}),
-    "enumeration": frozenset({str}),
-    "set": frozenset({frozenset}),
-    "quantity": frozenset({int, float}),
-    "count": frozenset({int, float}),
-    "time": frozenset({int, float}),
-    "date": frozenset({int, float}),
-}
+_CLASS: dict[str, type] = {
+    "boolean": bool, "enumeration": str, "set": frozenset, "quantity": float, "count": float, "time": float, "date": float,
+}  # fmt: skip
+"""The plain type of a fact's values; whole numbers may stand for numbers."""
 
 
 class PreparedScene:
@@ -38,34 +33,36 @@ class FactTable:
         self.vocabulary = vocabulary
         self.slots = {fact.name: slot for slot, fact in enumerate(vocabulary)}
         self.scene_slot, self.plan_slot = len(self.slots), len(self.slots) + 1
-        self._expected = {fact.name: (self.slots[fact.name], _CLASSES[fact.kind]) for fact in vocabulary}
+        self._expected: dict[str, tuple[int, type | None]] = {f.name: (self.slots[f.name], _CLASS[f.kind]) for f in vocabulary}
+        self._nowhere: tuple[int, type | None] = (0, None)
         self._empty: dict[frozenset[str], Values] = {}
 
     def prepare(self, scene: Scene) -> PreparedScene:
         """Encode a scene. Values that are None are unknown; NaN is unknown and nothing is assumed in its place."""
         values = self._unknown(scene.silent).copy()
-        expected = self._expected
-        for name, value in scene.facts.items():
-            found = expected.get(name)
-            if found is not None:
-                if value.__class__ not in found[1] or value != value:
-                    return self._prepare_odd(scene)
-                values[found[0]] = value
-        values[self.scene_slot] = scene.facts
+        if not self._fill(values, scene.facts):
+            return self._prepare_odd(scene)
+        values[-2] = scene.facts
         return PreparedScene(self, scene, values)
 
     def with_plan(self, prepared: PreparedScene, plan: Plan) -> Values | None:
         """The values of a prepared scene with the plan's own over them; None when the plan has a value that needs a second look."""
         values = prepared.values.copy()
-        expected = self._expected
-        for name, value in plan.facts.items():
-            found = expected.get(name)
-            if found is not None:
-                if value.__class__ not in found[1] or value != value:
-                    return None
-                values[found[0]] = value
+        if plan.facts and not self._fill(values, plan.facts):
+            return None
         values[-1] = plan.facts
         return values
+
+    def _fill(self, values: Values, facts: Mapping[str, Value]) -> bool:
+        """Put facts in their slots; False as soon as one is not plainly a value of its kind. (Every verdict passes here.)"""
+        find, nowhere = self._expected.get, self._nowhere
+        for name, value in facts.items():
+            slot, kind = find(name, nowhere)
+            if (value.__class__ is kind and value == value) or (kind is float and value.__class__ is int):
+                values[slot] = value
+            elif kind is not None:
+                return False
+        return True
 
     def tidy(self, facts: Mapping[str, Any]) -> tuple[dict[str, Value], frozenset[str], tuple[str, ...]]:
         """Facts in the types conditions expect: the usable ones, the names that were NaN, and what is wrong with the rest."""
@@ -117,8 +114,8 @@ def _plain(fact: Fact, value: Any) -> Value:
     if fact.kind == "set" and isinstance(value, (set, list, tuple)):
         value = frozenset(value)
     if isinstance(value, bool) is (fact.kind == "boolean"):
-        for kind in _CLASSES[fact.kind]:
-            if isinstance(value, kind):
-                plain: Value = value if value.__class__ is kind else kind(value)  # type: ignore[assignment]
-                return plain
+        kind = _CLASS[fact.kind]
+        if isinstance(value, (kind, int) if kind is float else kind):
+            plain: Any = value if value.__class__ in (kind, int) else kind(value)
+            return plain  # type: ignore[no-any-return]
     raise FactError(f"{fact.name} is a {fact.kind} and cannot be {value!r}")
