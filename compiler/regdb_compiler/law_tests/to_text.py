@@ -6,12 +6,13 @@ import datetime
 import textwrap
 from collections.abc import Iterable, Iterator
 
-from regdb.explanation import RuleReason
+from regdb.explanation import Evidence, RuleReason, changes, evidence, first_failing
+from regdb.meaning import Judgement
 from regdb.truth import spell
 from regdb_compiler.law_tests.outcome import Outcome, Tally
 
 WIDTH = 80
-_LABEL = 12
+_LABEL = 14
 RED, BOLD = "31", "1"
 
 
@@ -50,7 +51,8 @@ def _why(outcome: Outcome) -> Iterator[str]:
     for reason in found.unless:
         yield from _reason(reason, "not excused")
     wanted = (outcome.test.expected.deciding or frozenset()) | _subject(outcome)
-    for reason in _absent(outcome, wanted - {item.regulation.id for item in (*found.because, *found.unless)}):
+    shown = {item.regulation.id for item in (*found.because, *found.unless)}
+    for reason in _absent(outcome.judgement, wanted - shown) if outcome.judgement is not None else ():
         yield from _reason(reason, "not deciding")
     if found.unknown:
         yield from _folded("unknown", ", ".join(found.unknown))
@@ -62,17 +64,18 @@ def _subject(outcome: Outcome) -> frozenset[str]:
     return frozenset() if outcome.test.entry is None else frozenset({outcome.test.entry.id})
 
 
-def _absent(outcome: Outcome, names: frozenset[str]) -> Iterator[RuleReason]:
-    """Rules that were expected to decide and did not."""
-    from regdb.explanation import evidence, first_failing
-
-    judgement = outcome.judgement
-    for rule in judgement.concerned if judgement is not None else ():
-        if judgement is not None and rule.id in names:
-            holds, situation = judgement.holds(rule), judgement.situation
+def _absent(judgement: Judgement, names: frozenset[str]) -> Iterator[RuleReason]:
+    """Rules that were expected to decide and did not, each with the smallest change after which it would hold."""
+    situation = judgement.situation
+    for rule in judgement.concerned:
+        if rule.id in names:
+            holds = judgement.holds(rule)
             shown = tuple(evidence(rule.when, situation, wanted=True)) if holds else first_failing(rule, situation)
             by = tuple(other.id for other in judgement.defeaters(rule) if judgement.effective(other) is True)
-            yield RuleReason(rule, "absent", holds, judgement.breaks(rule), shown, by)
+            when = changes(rule.when, situation, wanted=True)
+            unless = () if rule.unless is None else changes(rule.unless, situation, wanted=False)
+            change = () if when is None or unless is None else (*when, *unless)
+            yield RuleReason(rule, "absent", holds, judgement.breaks(rule), shown, by, change)
 
 
 def _reason(reason: RuleReason, label: str) -> Iterator[str]:
@@ -82,10 +85,19 @@ def _reason(reason: RuleReason, label: str) -> Iterator[str]:
         state += f", displaced by {', '.join(reason.defeated_by)}"
     yield from _folded(label, f"{rule.id} ({rule.citation}) {state}" + (f': "{rule.quote}"' if rule.quote else ""))
     for item in reason.evidence:
-        values = ", ".join(f"{fact} is {value}{' (assumed)' if fact in item.assumed else ''}" for fact, value in item.values)
-        alone = len(item.values) == 1 and item.values[0] == (item.literal, spell(item.truth)) and not item.assumed
-        text = f"{item.literal} is {spell(item.truth)}" if alone else f"{item.literal} is {spell(item.truth)}" + (f" ({values})" if values else "")
-        yield from _folded("", f"- {text}")
+        yield from _folded("", f"- {_literal(item)}")
+    if reason.role == "absent":
+        for change in reason.smallest_change:
+            yield from _folded("", f"- would hold if {change}")
+
+
+def _literal(item: Evidence) -> str:
+    """`signal.color == red is true (signal.color is red)`; a boolean fact says its value once."""
+    said = f"{item.literal} is {spell(item.truth)}"
+    if [fact for fact, _ in item.values] == [item.literal]:
+        return said + (" (assumed)" if item.assumed else "")
+    values = ", ".join(f"{fact} is {value}{', assumed' if fact in item.assumed else ''}" for fact, value in item.values)
+    return f"{said} ({values})" if values else said
 
 
 def _folded(label: str, text: str, indent: int = 2 + _LABEL) -> list[str]:
