@@ -1,0 +1,97 @@
+"""What `check` and `explain` share: from options to a verdict, with every problem of the question told at once."""
+
+from __future__ import annotations
+
+import datetime
+from dataclasses import dataclass
+from pathlib import Path
+
+import typer
+
+from regdb.situation import Plan, Scene, SceneError, read_plan, read_scene
+from regdb_runtime.commands.scene_file import Question, add_facts, read_question
+from regdb_runtime.database import RegulationDatabase
+from regdb_runtime.errors import RegdbRuntimeError, RequestError
+from regdb_runtime.legality import View
+from regdb_runtime.verdict import Verdict
+
+FORMATS = ("text", "json")
+
+
+@dataclass(frozen=True)
+class Asked:
+    """A verdict with the law it was asked of; `today` says that the day was not given."""
+
+    verdict: Verdict
+    view: View
+    database: RegulationDatabase
+    today: bool
+
+    @property
+    def exit_code(self) -> int:
+        """0 when lawful, 1 when not or not known to be."""
+        return 0 if self.verdict.verdict == "legal" else 1
+
+
+def ask(
+    scene: Path | None, facts: list[str] | None, current: str, following: str, place: str, on: str, db: Path | None,
+    codes: Path | None, format_: str,
+) -> Asked:  # fmt: skip
+    """Judge what the options say. Exits 2, all problems on stderr, when they cannot be understood."""
+    problems = [] if format_ in FORMATS else [f"unknown format {format_!r}; there are: {', '.join(FORMATS)}"]
+    try:
+        question = read_question(scene) if scene is not None else Question()
+        database = RegulationDatabase.open(db if db is not None else _compiled(codes))
+    except RegdbRuntimeError as error:
+        raise _refused([*problems, str(error)]) from None
+    problems += add_facts(question, facts or (), database.vocabulary)
+    question.plan |= {key: value for key, value in (("current", current), ("next", following)) if value}
+    today = not (on or question.day)
+    day = on or question.day or datetime.date.today().isoformat()
+    view, read = _read(question, database, place, day, problems)
+    if problems or view is None or read is None:
+        raise _refused(problems)
+    return Asked(view.judge(*read), view, database, today)
+
+
+def _read(
+    question: Question, database: RegulationDatabase, place: str, day: str, problems: list[str]
+) -> tuple[View | None, tuple[Scene, Plan] | None]:
+    """The law and the situation asked about; what cannot be read is added to `problems`."""
+    view, scene, plan = None, None, None
+    if not any(question.plan.get(key) for key in ("current", "next")):
+        problems.append("no transition: give --current and --next, or `plan:` with current and next in the scene file")
+    try:
+        view = database.at(place or question.place or _only_state(database), day)
+    except RequestError as error:
+        problems.append(str(error))
+    try:
+        scene = read_scene(question.scene, database.vocabulary)
+    except SceneError as error:
+        problems += error.problems
+    try:
+        plan = read_plan(question.plan, database.vocabulary, database.machine)
+    except SceneError as error:
+        problems += error.problems
+    return view, None if scene is None or plan is None else (scene, plan)
+
+
+def _only_state(database: RegulationDatabase) -> str:
+    """The one enacted state of the database. Raises RequestError where there is none or a choice."""
+    states = [item.id for item in database.tree if item.kind == "state" and item.status == "law"]
+    if len(states) != 1:
+        raise RequestError(f"which jurisdiction? give --in, one of: {', '.join(sorted(item.id for item in database.tree))}")
+    return states[0]
+
+
+def _compiled(codes: Path | None) -> Path:
+    """The database of the codes, compiled when needed; the front door knows where codes and cache lie."""
+    from regdb.front import database
+
+    return database(codes)
+
+
+def _refused(problems: list[str]) -> typer.Exit:
+    for problem in problems:
+        typer.echo(f"error: {problem}", err=True)
+    return typer.Exit(2)
