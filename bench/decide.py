@@ -5,6 +5,7 @@ jurisdiction) or in a tree (a state, 9 counties, 90 cities). Answers are checked
 one core. Run as `.venv/bin/python bench/decide.py [--quick]`; writes out/bench/decide.json.
 """
 
+# ruff: noqa: T201  # a script whose result is what it prints
 from __future__ import annotations
 
 import json
@@ -18,6 +19,7 @@ from pathlib import Path
 from typing import Any
 
 import pandas as pd
+from regdb_runtime.database import RegulationDatabase
 
 from regdb.condition import And, Compare, Is, Linear, Node, Not, OneOf
 from regdb.condition_text import show
@@ -28,7 +30,6 @@ from regdb.situation import Plan, Scene, Situation
 from regdb.states import State, StateMachine, SuperState
 from regdb.units import to_si
 from regdb.vocabulary import Attribute, Fact, Vocabulary
-from regdb_runtime.database import RegulationDatabase
 
 OUT = Path("out/bench/decide.json")
 STATES = tuple(f"drive.s{i}" for i in range(24))

@@ -6,10 +6,10 @@ from collections.abc import Callable
 from typing import Any
 
 import pytest
+from regdb_runtime.database import RegulationDatabase
 
 from regdb.meaning import decide, governing
 from regdb.situation import Situation
-from regdb_runtime.database import RegulationDatabase
 
 SCENES = 100_000
 
