@@ -15,7 +15,7 @@ from regdb.vocabulary import FactError, Value, Vocabulary, read_date
 from regdb_runtime.errors import RequestError
 from regdb_runtime.index.bitmaps import bitmaps
 from regdb_runtime.index.bucket import Bucket, Decide
-from regdb_runtime.index.generated import generate
+from regdb_runtime.index.generated import Generator
 from regdb_runtime.index.guarded import judge_guarded
 from regdb_runtime.index.slots import FactTable, PreparedScene
 from regdb_runtime.verdict import Circumstances, Verdict
@@ -42,8 +42,9 @@ def day_number(date: Day) -> int:
 class RulesInForce:
     """The regulations of one set of jurisdictions and one date interval, by transition; decisions are compiled on first use."""
 
-    def __init__(self, rules: Sequence[Regulation], table: FactTable, machine: StateMachine, threshold: int = BITMAPS_BEYOND) -> None:
-        self.rules, self.table, self.machine = tuple(rules), table, machine
+    def __init__(self, rules: Sequence[Regulation], generator: Generator, machine: StateMachine, threshold: int = BITMAPS_BEYOND) -> None:
+        self.rules, self.machine = tuple(rules), machine
+        self.table, self._generator = generator.expressions.table, generator
         self.decides: dict[tuple[str, str], tuple[Decide, Bucket]] = {}
         self._threshold = threshold
         self._by_state: dict[str | None, list[int]] = {}
@@ -65,7 +66,7 @@ class RulesInForce:
         places = sorted([*self._by_state.get(None, ()), *self._by_state.get(current, ())])
         rules = [rule for place in places if (rule := self.rules[place]).next is None or following in rule.next]
         bucket = Bucket(rules, self.table)
-        compiled = generate(bucket) if len(bucket.candidates) <= self._threshold else bitmaps(bucket)
+        compiled = self._generator.generate(bucket) if len(bucket.candidates) <= self._threshold else bitmaps(bucket)
         return compiled, bucket
 
 
@@ -173,6 +174,7 @@ class Calendar:
         self.vocabulary, self.machine, self.tree = vocabulary, machine, tree
         self.database_hash, self._threshold = database_hash, threshold
         self.table = FactTable(vocabulary)
+        self._generator = Generator(self.table)
         self._by_place: dict[str, list[Regulation]] = {}
         for rule in regulations:
             self._by_place.setdefault(rule.jurisdiction, []).append(rule)
@@ -187,11 +189,11 @@ class Calendar:
             here = self.tree.get(place)
         except JurisdictionError as error:
             raise RequestError(str(error)) from None
-        ids = self.tree.governing(here.id, self._loaded)
+        ids = self.tree.governing(here.id, self._loaded) & self._loaded
         key = ids, bisect_right(self._changes(ids), day)
         rules = self._rules.get(key)
         if rules is None:
-            rules = self._rules[key] = RulesInForce(self._in_force(ids, day), self.table, self.machine, self._threshold)
+            rules = self._rules[key] = RulesInForce(self._in_force(ids, day), self._generator, self.machine, self._threshold)
         iso = datetime.date.fromordinal(day).isoformat()
         return View(rules, Circumstances(self.vocabulary, here.id, iso, self._is_model(ids), self.database_hash))
 
@@ -210,5 +212,5 @@ class Calendar:
         return days
 
     def _is_model(self, ids: frozenset[str]) -> bool:
-        loaded = [self.tree.get(name) for name in ids if name in self._loaded]
+        loaded = [self.tree.get(name) for name in ids]
         return bool(loaded) and all(item.status == "model" for item in loaded)

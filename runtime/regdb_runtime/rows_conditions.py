@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Collection, Sequence
+from marshal import dumps
 from typing import Any
 
 from regdb.condition import And, Const, Linear, Literal, Node, Not, Or, literal_facts
@@ -16,7 +17,7 @@ class ConditionReader:
 
     def __init__(self, facts: Collection[str]) -> None:
         self._facts = facts
-        self._literals: dict[Any, Literal] = {}
+        self._literals: dict[bytes, Literal] = {}
 
     def trees(self, texts: Sequence[str | None]) -> list[Node | None]:
         """One tree per text, None where the text is None. Raises DatabaseDamaged for what is no tree or reads no known fact."""
@@ -43,19 +44,11 @@ class ConditionReader:
 
     def _node(self, data: Any) -> Node:
         kind = data[0]
-        if kind == "is" or kind == "known":
-            key: Any = (kind, data[1])
-        elif kind == "and" or kind == "or":
+        if kind == "and" or kind == "or":
             return (And if kind == "and" else Or)(tuple([self._node(part) for part in data[1:]]))
-        elif kind == "not" and len(data) == 2:
+        if kind == "not" and len(data) == 2:
             return Not(self._node(data[1]))
-        elif kind == "in":
-            key = (kind, data[1], *data[2])
-        elif kind == "cmp":
-            left, right = data[2], data[3]
-            key = (data[1], left[0], *map(tuple, left[1]), right[0], *map(tuple, right[1]), data[4], data[5])
-        else:
-            key = tuple(data), data[1] is True
+        key = dumps(data, 2)
         return self._literals.get(key) or self._literals.setdefault(key, self._literal(data))
 
     def _literal(self, data: Any) -> Literal:

@@ -42,3 +42,18 @@ def test_agrees_with_the_reference(random_law: Callable[[int], Any], threshold: 
                 verdicts[got.verdict] += 1
                 done += 1
     assert min(verdicts.values()) > SCENES // 50, verdicts
+
+
+def test_large_buckets_agree_in_both_forms(random_law: Callable[[int], Any]) -> None:
+    """300 rules that all concern the transition: many share a gate, many cut points fall on one fact."""
+    for seed in (1, 2, 3):
+        law = random_law(seed)
+        rules = law.rules(300)
+        forms = [RegulationDatabase(law.vocabulary, law.machine, law.tree, rules, threshold=size).at("city", 739003) for size in (-1, 999)]
+        for _ in range(40):
+            scene, plan = law.scene(), law.plan()
+            want = decide(governing(rules, law.tree, "city", 739003), Situation(law.vocabulary, scene, plan))
+            for view in forms:
+                got = view.judge(scene, plan)
+                assert (got.verdict, got.deciding, shown(got.limits)) == (want.verdict, want.deciding, shown(want.limits))
+                assert (shown(got.possible), got.missing, got.assumed) == (shown(want.possible), want.missing, want.assumed)

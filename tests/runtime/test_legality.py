@@ -12,7 +12,6 @@ import numpy as np
 import pytest
 from regdb_runtime.database import RegulationDatabase
 from regdb_runtime.errors import DatabaseDamaged, RequestError
-from regdb_runtime.index.generated import write
 from regdb_runtime.legality import View, judge
 
 from regdb.condition import And, Compare, Is, Known, Linear, Node, Not, OneOf
@@ -180,7 +179,8 @@ def test_a_fact_outside_the_vocabulary_is_refused(view: Callable[..., View]) -> 
 
 def test_no_text_of_the_law_reaches_the_generated_source(view: Callable[..., View]) -> None:
     here = view(rule("evil\");import os", OneOf("e0", ("red'); import os", "red")), limits=at_most(-0.5)))
-    source, names = write(here._rules.bucket(A, B)[1])
+    generator = here._rules._generator
+    source, names = generator.write(here._rules.bucket(A, B)[1]), generator.expressions.names
     assert "evil" not in source
     assert "import" not in source
     assert here.judge(Scene({"e0": "red"}), Plan(A, B, {"q0": 0.0})).verdict == "illegal"

@@ -23,7 +23,7 @@ class Expressions:
 
     def __init__(self, table: FactTable) -> None:
         self.table = table
-        self.names: dict[str, Any] = {}
+        self.names: dict[str, Any] = {"__builtins__": {}}
         self._held: dict[object, str] = {}
         self._written: dict[Node, tuple[str, str]] = {}
 
