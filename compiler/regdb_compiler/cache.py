@@ -3,13 +3,20 @@
 from __future__ import annotations
 
 import hashlib
+import json
 import os
 from collections.abc import Iterator
 from pathlib import Path
+from typing import TYPE_CHECKING
 
+from regdb.completion import names_file
 from regdb.front import FrontError
 from regdb.schema import APPLICATION_ID, USER_VERSION
 from regdb.version import VERSION
+from regdb_compiler.emit.in_place import folder_beside, move_in
+
+if TYPE_CHECKING:
+    from regdb_compiler.driver import Build
 
 KEPT = 8
 """Databases kept in the cache; the least recently used go first."""
@@ -28,7 +35,10 @@ def cached_database(codes: Path, cache: Path) -> Path:
     if _is_whole(path):
         _mark_used(path)
         return path
-    _compile(codes, path)
+    try:
+        _keep_names(_compile(codes, path), names_file(codes, cache))
+    except OSError as error:
+        raise FrontError(f"the cache {cache} cannot be written: {error.strerror}; set XDG_CACHE_HOME to a folder that can") from error
     _prune(cache, path)
     return path
 
@@ -76,20 +86,39 @@ def _is_whole(path: Path) -> bool:
     return len(head) == _HEADER_BYTES and head[68:72] == APPLICATION_ID.to_bytes(4, "big") and size == pages * page_size
 
 
-def _compile(codes: Path, path: Path) -> None:
+def _compile(codes: Path, path: Path) -> Build:
     from regdb_compiler.diagnostics import RegdbInputError
     from regdb_compiler.driver import build
     from regdb_compiler.emit.to_sqlite import write_database
 
+    found = build(codes)
     try:
-        write_database(build(codes), path)
+        write_database(found, path)
     except RegdbInputError as error:
         shown = [f"{d.place} {d.code} {d.message}" for d in error.diagnostics[:ERRORS_SHOWN]]
         more = len(error.diagnostics) - len(shown)
         lines = "\n  ".join([*shown, *([f"and {more} more"] if more else [])])
         raise FrontError(f"the codes in {codes} have errors:\n  {lines}\nrun `regdb lint` to see them all") from error
-    except OSError as error:
-        raise FrontError(f"the cache {path.parent} cannot be written: {error.strerror}; set XDG_CACHE_HOME to a folder that can") from error
+    return found
+
+
+def _keep_names(build: Build, path: Path) -> None:
+    """Leave the names for the shell's completion (see `regdb.completion`)."""
+    corpus = build.corpus
+    machine = corpus.machine
+    names = {
+        "regulation": list(dict.fromkeys(rule.id for rule in build.regulations)),
+        "section": [section.id for section in corpus.sections],
+        "fact": sorted(corpus.vocabulary.facts),
+        "attribute": sorted(corpus.vocabulary.attributes),
+        "state": sorted(machine.names),
+        "jurisdiction": sorted(item.id for item in corpus.tree),
+        "topic": sorted({section.doc.topic for section in corpus.sections}),
+    }
+    with folder_beside(path) as folder:
+        file = folder / path.name
+        file.write_text(json.dumps(names, separators=(",", ":")), "utf-8")
+        move_in(file, path)
 
 
 def _mark_used(path: Path) -> None:
@@ -100,13 +129,14 @@ def _mark_used(path: Path) -> None:
 
 
 def _prune(cache: Path, keep: Path) -> None:
-    """Drop the least recently used databases; one that another process has just dropped is no matter."""
-    aged = []
-    for path in cache.glob("*.sqlite"):
-        try:
-            aged.append((path.stat().st_mtime_ns, path))
-        except OSError:
-            continue
-    for _, path in sorted(aged, reverse=True)[KEPT:]:
-        if path != keep:
-            path.unlink(missing_ok=True)
+    """Drop the least recently used databases and name lists; one that another process has just dropped is no matter."""
+    for pattern in ("*.sqlite", "names-*.json"):
+        aged = []
+        for path in cache.glob(pattern):
+            try:
+                aged.append((path.stat().st_mtime_ns, path))
+            except OSError:
+                continue
+        for _, path in sorted(aged, reverse=True)[KEPT:]:
+            if path != keep:
+                path.unlink(missing_ok=True)

@@ -79,12 +79,15 @@ COLUMNS = (
 )
 
 
-def read_lines(connection: sqlite3.Connection) -> list[Row]:
-    """Every regulation version as a line of `COLUMNS`, in the database's order; lists and objects are JSON text, open dates None."""
+def read_lines(connection: sqlite3.Connection, where: str = "1", values: tuple[str, ...] = ()) -> list[Row]:
+    """Regulation versions as lines of `COLUMNS`, in the database's order; lists and objects are JSON text, open dates None.
+
+    `where` narrows them in SQL over regulation r, its section s and version v.
+    """
     chosen = ", ".join(column.source for column in COLUMNS)
     query = f"""SELECT {chosen} FROM regulation r JOIN section_version v ON v.key = r.section_version
-                JOIN section s ON s.id = v.section ORDER BY r.key"""
-    return connection.execute(query).fetchall()
+                JOIN section s ON s.id = v.section WHERE {where} ORDER BY r.key"""
+    return connection.execute(query, values).fetchall()
 
 
 _TYPED: dict[str, Callable[[Any], Any]] = {"boolean": bool, "array": json.loads, "object": json.loads}

@@ -1,0 +1,37 @@
+"""`regdb show`: a section, regulation, citation, fact, state, topic or jurisdiction, with what hangs on it."""
+
+import json
+from typing import Annotated
+
+import typer
+
+from regdb import completion
+from regdb.front import database
+from regdb_compiler.commands.options import Codes, Format, In, On, Output, asked_day, has_color
+from regdb_compiler.commands.progress import working
+
+
+def command(
+    name: Annotated[
+        list[str], typer.Argument(metavar="NAME...", help="cvc-21453-a, CVC 21453(b), 21453, a fact, a state, a topic.",
+                                  autocompletion=completion.subjects)
+    ],
+    codes: Codes = None,
+    on: On = "",
+    in_: In = "",
+    format_: Output = Format.text,
+) -> None:  # fmt: skip
+    # Loaded here so that the shell's completion, which loads this module, need not wait for them.
+    from regdb_compiler.commands.show_text import show_text
+    from regdb_compiler.library import Library
+    from regdb_compiler.shown import shown
+
+    day = asked_day(on)
+    with working("compiling"):
+        path = database(codes)
+    with Library(path, in_) as library:
+        data = shown(library, library.find(" ".join(name)), day.iso)
+    if format_ is Format.json:
+        typer.echo(json.dumps(data, indent=1, ensure_ascii=False))
+    else:
+        typer.echo(show_text(data, str(day), color=has_color()), nl=False)
