@@ -15,6 +15,8 @@ from regdb_runtime.index.slots import FactTable, Values
 Found = tuple[str, tuple[Regulation, ...], tuple[LimitInForce, ...]]
 """Verdict, deciding rules, limits in force."""
 Decide = Callable[[Values], Found]
+Finish = Callable[[list[int], list[int], list[int], Collection[int], Values], Found]
+"""Indices of the rules broken, undecided, bringing limits, and of exceptions in effect, with the values -> the answer."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -71,23 +73,31 @@ class Bucket:
             found = self._beyond[index] = beyond(self.rules[index], self.table)
         return found
 
-    def finish(
-        self, broken: list[int], undecided: list[int], limiting: list[int], excepting: Collection[int], values: Values
-    ) -> Found:
-        """Indices as the answer: rules in the order of their ids, limits in that of their rules."""
-        limits: tuple[LimitInForce, ...] = ()
-        if limiting:
-            limiting.sort()
-            for index in limiting:
-                limits += self.bounds[index](values)
-        if broken:
-            verdict, chosen = ILLEGAL, sorted(broken)
-        elif undecided:
-            verdict, chosen = UNKNOWN, sorted(undecided)
-        else:
-            verdict, chosen = LEGAL, sorted(excepting)
-        rules = self.rules
-        return verdict, tuple([rules[index] for index in chosen]), limits
+    @cached_property
+    def finish(self) -> Finish:
+        """The function that turns indices into the answer: rules in the order of their ids, limits in that of their rules."""
+        bounds, rule_at = self.bounds, self.rules.__getitem__
+        fixed = {part.index: bounds[part.index]([]) for part in self.parts if part.limiting and _is_fixed(part.rule)}
+
+        def finish(
+            broken: list[int], undecided: list[int], limiting: list[int], excepting: Collection[int], values: Values
+        ) -> Found:
+            limits: tuple[LimitInForce, ...] = ()
+            if limiting:
+                if len(limiting) > 1:
+                    limiting.sort()
+                for index in limiting:
+                    limits += fixed.get(index) or bounds[index](values)
+            verdict, chosen = (ILLEGAL, broken) if broken else (UNKNOWN, undecided) if undecided else (LEGAL, sorted(excepting))
+            if len(chosen) > 1:
+                chosen.sort()
+            return verdict, tuple(map(rule_at, chosen)), limits
+
+        return finish
+
+
+def _is_fixed(rule: Regulation) -> bool:
+    return all(not limit.bound.terms for limit in rule.limits)
 
 
 def _parts(rules: tuple[Regulation, ...]) -> tuple[Part, ...]:
