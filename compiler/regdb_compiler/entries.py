@@ -26,6 +26,9 @@ class Written:
     node: Mapping
     file: SourceFile
 
+    def __repr__(self) -> str:
+        return f"<{type(self).__name__} at {self.node.place}>"
+
     def field(self, *path: str | int) -> Node:
         """The node of a field, or of the nearest thing around it that is written."""
         return node_at(self.node, path)
@@ -51,7 +54,7 @@ class Written:
         return node.place_of(start, end) if isinstance(node, Scalar) else node.place
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class SectionEntry(Written):
     """One section's file."""
 
@@ -80,7 +83,7 @@ class SectionEntry(Written):
         )
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class VersionEntry(Written):
     """One dated version of a section."""
 
@@ -109,7 +112,7 @@ class VersionEntry(Written):
         )
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class RegulationEntry(Written):
     """One regulation as annotated, in its version."""
 
@@ -168,7 +171,7 @@ class RegulationEntry(Written):
         return checked if self.in_force(checked) else self.effective
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class CaseEntry(Written):
     """A scene that involves several sections."""
 
