@@ -104,26 +104,41 @@ def scenes(count: int, words: Vocabulary, seed: int) -> list[tuple[Scene, Plan]]
 
 
 class PapersWay:
-    """A DataFrame filtered by state, road and jurisdiction, then the Condition column searched for the scene's keywords."""
+    """The paper's table in a DataFrame: its fields for place, date, states, road and speed filtered by one expression, then the
+    Condition column searched for the scene's keywords. (What it finds is candidates: it knows no exceptions, no unknowns.)"""
 
     def __init__(self, rules: list[Regulation]) -> None:
         self.frame = pd.DataFrame(
             {
                 "Condition": [rule.condition for rule in rules],
                 "Jurisdiction": [rule.jurisdiction for rule in rules],
-                "Max Speed": [rule.limits[0].bound.constant if rule.limits else 999.0 for rule in rules],
-                "Current": [" ".join(sorted(rule.current or ())) for rule in rules],
-                "Next": [" ".join(sorted(rule.next or ())) for rule in rules],
+                "Effective": ["2000-01-01"] * len(rules),
+                "Attribute: Road Type": [road_of(rule) for rule in rules],
+                "Attribute: Max Speed": [rule.limits[0].bound.constant if rule.limits else float("nan") for rule in rules],
+                "Possible Current States": [", ".join(sorted(rule.current or ())) for rule in rules],
+                "Possible Next States": [", ".join(sorted(rule.next or ())) for rule in rules],
             }
         )
 
     def judge(self, places: frozenset[str], scene: Scene, plan: Plan) -> Any:
         frame = self.frame
+        road, speed = frame["Attribute: Road Type"], frame["Attribute: Max Speed"]
+        here = frame[
+            frame["Jurisdiction"].isin(places)
+            & (frame["Effective"] <= "2026-03-02")
+            & ((road == "") | (road == scene.facts.get("road", "")))
+            & (speed.isna() | (speed < plan.facts["plan.speed"]))
+            & frame["Possible Current States"].str.contains(plan.current, regex=False)
+            & frame["Possible Next States"].str.contains(plan.next, regex=False)
+        ]
         keywords = "|".join(name for name, value in scene.facts.items() if value is True)
-        here = frame[frame["Jurisdiction"].isin(places)]
-        here = here[here["Current"].str.contains(plan.current, regex=False) & here["Next"].str.contains(plan.next, regex=False)]
-        found = here[here["Condition"].str.contains(keywords, regex=True)]
-        return found[(found["Max Speed"] >= plan.facts["plan.speed"]) | (found["Max Speed"] == 999.0)]
+        return here[here["Condition"].str.contains(keywords, regex=True)]
+
+
+def road_of(rule: Regulation) -> str:
+    """The one kind of road a rule speaks of, or nothing."""
+    parts = rule.when.parts if isinstance(rule.when, And) else (rule.when,)
+    return next((part.words[0] for part in parts if isinstance(part, OneOf) and part.fact == "road"), "")
 
 
 def clock(run: Callable[[], object], repeats: int) -> float:
