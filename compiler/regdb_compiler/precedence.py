@@ -75,9 +75,11 @@ class _Index:
         return ([], problem) if problem else ([full], None)
 
     def _reaches(self, entry: RegulationEntry, other: RegulationEntry, kind: str) -> bool:
-        """A group exception displaces its own jurisdiction's rules and those below; a group override those above."""
-        tree, own, theirs = self.corpus.tree, entry.jurisdiction.id, other.jurisdiction.id
-        return tree.is_ancestor(theirs, own) if kind == "overrides" else own == theirs or tree.is_ancestor(own, theirs)
+        """A group exception displaces its own jurisdiction's rules and those below (a model's only its own); a group override those above."""
+        tree, own, theirs = self.corpus.tree, entry.jurisdiction, other.jurisdiction
+        if kind == "overrides":
+            return tree.is_ancestor(theirs.id, own.id)
+        return own is theirs or (own.status != "model" and tree.is_ancestor(own.id, theirs.id))
 
     def _side(self, entry: RegulationEntry, target: RegulationEntry, kind: str, position: int) -> Diagnostic | None:
         own, theirs = entry.jurisdiction, target.jurisdiction

@@ -7,7 +7,7 @@ from typing import Annotated
 import typer
 
 from regdb.front import FrontError, database
-from regdb_compiler.diff.compare import Change, compare, compare_by_topic
+from regdb_compiler.diff.compare import DATE_FIELDS, Change, compare, compare_by_topic
 from regdb_compiler.diff.report import to_json, to_text
 from regdb_compiler.diff.sides import Item, jurisdiction_paths, read_items
 
@@ -32,7 +32,8 @@ def _compare(old: str, new: str, codes: Path | None, in_: str | None, on: str | 
         path = database(codes)
         where = _path_of(path, in_) if in_ else None
         place = f" in {in_}" if in_ else ""
-        return (old, new + place), compare(read_items(path, on=old, jurisdictions=where), read_items(path, on=new, jurisdictions=where))
+        sides = [read_items(path, on=day, jurisdictions=where) for day in (old, new)]
+        return (old, new + place), compare(*sides, without=DATE_FIELDS)
     if Path(old).exists() and Path(new).exists():
         return (old, new), compare(_items_at(Path(old), in_, on), _items_at(Path(new), in_, on))
     path = database(codes)

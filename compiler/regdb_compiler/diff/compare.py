@@ -60,12 +60,16 @@ def _limit_impact(old: Item, new: Item, names: set[str]) -> str:
     return steps.pop() if len(steps) == 1 else DIFFERENT
 
 
-def compare(old: Iterable[Item], new: Iterable[Item]) -> tuple[Change, ...]:
-    """Changes between two lists of items, aligned by id; of an id with several versions, version by version."""
+def compare(old: Iterable[Item], new: Iterable[Item], without: frozenset[str] = frozenset()) -> tuple[Change, ...]:
+    """Changes between two lists of items, aligned by id; of an id with several versions, version by version.
+
+    Fields in `without` do not count: between two dates the dates themselves are no difference.
+    """
     before, after = _by_id(old), _by_id(new)
     changes: list[Change] = []
     for name in sorted(before.keys() | after.keys()):
-        changes += _versions(before.get(name, []), after.get(name, []))
+        found = _versions(before.get(name, []), after.get(name, []), without)
+        changes += [change for change in found if change.fields or change.kind != "changed"]
     return tuple(changes)
 
 
@@ -76,7 +80,7 @@ def _by_id(items: Iterable[Item]) -> dict[str, list[Item]]:
     return found
 
 
-def _versions(old: list[Item], new: list[Item]) -> list[Change]:
+def _versions(old: list[Item], new: list[Item], without: frozenset[str]) -> list[Change]:
     """The same text is the same version; what is left over is paired by its first day, then in order."""
     left_old = [item for item in old if all(item.fields != other.fields for other in new)]
     left_new = [item for item in new if all(item.fields != other.fields for other in old)]
@@ -88,7 +92,7 @@ def _versions(old: list[Item], new: list[Item]) -> list[Change]:
             left_old.remove(item)
             left_new.remove(match)
     pairs += zip_longest(left_old, left_new)
-    return [_change(a, b) for a, b in pairs]
+    return [_change(a, b, without) for a, b in pairs]
 
 
 def compare_by_topic(old: Sequence[Item], new: Sequence[Item]) -> tuple[Change, ...]:
