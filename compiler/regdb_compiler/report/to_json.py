@@ -41,7 +41,7 @@ _RELATED = {
     "additionalProperties": False,
 }
 _FINDING = {
-    "code": {"type": "string", "pattern": "^R[0-9]{3}$"},
+    "code": {"type": "string", "pattern": "^[A-Z]{1,4}[0-9]{3,4}$"},
     "level": {"enum": ["error", "warning", "info"]},
     **{key: {"type": "string"} for key in ("name", "message", "note", "help", "law", "fingerprint")},
     "place": _PLACE,
