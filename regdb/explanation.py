@@ -5,15 +5,15 @@ Everything here is built only when somebody asks; the decision itself needs none
 
 from __future__ import annotations
 
-from collections.abc import Iterable
 from dataclasses import dataclass
 
-from regdb.condition import OPPOSITE, And, Compare, Const, Is, Literal, Node, Not, Or, evaluate, literal_facts
+from regdb.condition import And, Literal, Node, Not, Or, evaluate, literal_facts
 from regdb.condition_text import show, show_linear
 from regdb.meaning import Judgement
 from regdb.regulation import Limit, Regulation
 from regdb.situation import Situation
 from regdb.truth import Truth, spell
+from regdb.turning import Change, after_changes, shown_value, to_hold, to_turn, to_turn_verdict
 from regdb.vocabulary import show_value
 
 
@@ -29,18 +29,6 @@ class Evidence:
     def __str__(self) -> str:
         seen = ", ".join(f"{fact} is {value}{' (assumed)' if fact in self.assumed else ''}" for fact, value in self.values)
         return f"{self.literal}: {spell(self.truth)}" + (f" ({seen})" if seen else "")
-
-
-@dataclass(frozen=True, slots=True)
-class Change:
-    """One thing that would have to be otherwise: the condition it should meet, and what it is now."""
-
-    want: str
-    now: str
-    facts: tuple[str, ...]
-
-    def __str__(self) -> str:
-        return f"{self.want} (now {self.now})" if self.now else self.want
 
 
 @dataclass(frozen=True, slots=True)
@@ -95,77 +83,9 @@ def first_failing(rule: Regulation, situation: Situation) -> tuple[Evidence, ...
 
 def _literal_evidence(node: Literal, situation: Situation) -> Evidence:
     facts = literal_facts(node)
-    values = tuple((fact, _shown(fact, situation)) for fact in facts)
+    values = tuple((fact, shown_value(fact, situation)) for fact in facts)
     assumed = tuple(fact for fact in facts if situation.observed(fact) is None and situation.assumed(fact) is not None)
     return Evidence(show(node), evaluate(node, situation), values, assumed)
-
-
-def _shown(fact: str, situation: Situation) -> str:
-    declared = situation.vocabulary.facts.get(fact)
-    value = situation.value(fact)
-    return spell(None) if value is None else declared.show(value) if declared else str(value)
-
-
-def changes(node: Node, situation: Situation, wanted: bool) -> tuple[Change, ...] | None:
-    """The fewest literals to change so that a condition becomes `wanted`; None when nothing can."""
-    if evaluate(node, situation) is wanted:
-        return ()
-    match node:
-        case Not(part):
-            return changes(part, situation, not wanted)
-        case And(parts) | Or(parts):
-            options = [changes(part, situation, wanted) for part in parts]
-            if isinstance(node, And) is wanted:
-                return None if any(option is None for option in options) else tuple(c for o in options for c in o or ())
-            return shortest(options)
-        case Const():
-            return None
-        case _:
-            return (_change(node, situation, wanted),)
-
-
-def shortest(options: Iterable[tuple[Change, ...] | None]) -> tuple[Change, ...] | None:
-    """The option with the fewest changes, the first of equals."""
-    possible = [option for option in options if option is not None]
-    return min(possible, key=len) if possible else None
-
-
-def _change(node: Literal, situation: Situation, wanted: bool) -> Change:
-    facts = literal_facts(node)
-    now = ", ".join(f"{fact} is {_shown(fact, situation)}" if len(facts) > 1 else _shown(fact, situation) for fact in facts)
-    if isinstance(node, Is):
-        return Change(f"{node.fact} is {spell(wanted)}", now, facts)
-    if isinstance(node, Compare) and not wanted:
-        node = Compare(OPPOSITE[node.op], node.left, node.right, node.kind, node.unit)
-        return Change(show(node), now, facts)
-    return Change(show(node if wanted else Not(node)), now, facts)
-
-
-def _within_limit(limit: Limit, situation: Situation) -> Change:
-    op = "<=" if limit.direction == "max" else ">="
-    bound = show_linear(limit.bound, "quantity", limit.unit)
-    return Change(f"{limit.fact} {op} {bound}", _shown(limit.fact, situation), (limit.fact,))
-
-
-def to_turn(rule: Regulation, judgement: Judgement) -> tuple[Change, ...] | None:
-    """The smallest change after which this rule is not broken: keep the limit, undo its condition, or earn an exception."""
-    situation = judgement.situation
-    options: list[tuple[Change, ...] | None] = []
-    if rule.limits:
-        options.append(tuple(_within_limit(limit, situation) for limit in rule.limits if judgement.beyond(limit) is not False))
-    options += [_to_hold(other, judgement) for other in judgement.defeaters(rule)]
-    options.append(changes(rule.when, situation, wanted=False))
-    if rule.unless is not None:
-        options.append(changes(rule.unless, situation, wanted=True))
-    return shortest(options)
-
-
-def _to_hold(rule: Regulation, judgement: Judgement) -> tuple[Change, ...] | None:
-    if any(judgement.effective(other) is not False for other in judgement.defeaters(rule)):
-        return None
-    when = changes(rule.when, judgement.situation, wanted=True)
-    unless = () if rule.unless is None else changes(rule.unless, judgement.situation, wanted=False)
-    return None if when is None or unless is None else (*when, *unless)
 
 
 def explain(judgement: Judgement) -> Explanation:
@@ -174,11 +94,7 @@ def explain(judgement: Judgement) -> Explanation:
     because = tuple(_reason(rule, "deciding", judgement) for rule in decision.deciding)
     failed = {o.id: o for rule in decision.deciding for o in judgement.defeaters(rule) if judgement.effective(o) is not True}
     unless = tuple(_reason(rule, "exception", judgement) for rule in failed.values())
-    turn: dict[str, Change] = {}
-    if decision.verdict != "legal":
-        for rule in decision.deciding:
-            turn.update({change.want: change for change in to_turn(rule, judgement) or ()})
-    return Explanation(decision.verdict, because, unless, decision.missing, _near_misses(judgement), tuple(turn.values()))
+    return Explanation(decision.verdict, because, unless, decision.missing, _near_misses(judgement), to_turn_verdict(judgement))
 
 
 def _near_misses(judgement: Judgement) -> tuple[RuleReason, ...]:
@@ -187,8 +103,9 @@ def _near_misses(judgement: Judgement) -> tuple[RuleReason, ...]:
     for rule in judgement.concerned:
         if rule.legality or rule.force == "advisory" or judgement.breaks(rule) is not False or not _seen(rule, judgement):
             continue
-        needed = _to_hold(rule, judgement)
-        if needed is not None and len(needed) <= 1 and (needed or rule.limits):
+        needed = to_hold(rule, judgement)
+        after = after_changes(needed, judgement) if needed is not None and len(needed) <= 1 and (needed or rule.limits) else None
+        if after is not None and after.effective(rule) is True:
             found.append(_reason(rule, "near miss", judgement, needed))
     return tuple(found[:5])
 
@@ -218,7 +135,7 @@ def _reason(rule: Regulation, role: str, judgement: Judgement, turn: tuple[Chang
         if judgement.effective(rule) is not False:
             shown += (_limit_evidence(limit, judgement),)
     defeated = tuple(other.id for other in judgement.defeaters(rule) if judgement.effective(other) is True)
-    change = turn if turn is not None else to_turn(rule, judgement) if role == "deciding" else _to_hold(rule, judgement)
+    change = turn if turn is not None else to_turn(rule, judgement) if role == "deciding" else to_hold(rule, judgement)
     return RuleReason(rule, role, holds, judgement.breaks(rule), shown, defeated, change or ())
 
 
@@ -227,7 +144,7 @@ def _limit_evidence(limit: Limit, judgement: Judgement) -> Evidence:
     beyond = judgement.beyond(limit)
     literal = f"{limit.fact} {op} {show_linear(limit.bound, 'quantity', limit.unit)}"
     facts = (limit.fact, *(fact for _, fact in limit.bound.terms))
-    values = tuple((fact, _shown(fact, judgement.situation)) for fact in facts)
+    values = tuple((fact, shown_value(fact, judgement.situation)) for fact in facts)
     return Evidence(literal, None if beyond is None else not beyond, values)
 
 

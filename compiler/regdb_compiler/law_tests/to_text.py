@@ -6,9 +6,10 @@ import datetime
 import textwrap
 from collections.abc import Iterable, Iterator
 
-from regdb.explanation import Evidence, RuleReason, changes, evidence, first_failing
+from regdb.explanation import Evidence, RuleReason, evidence, first_failing
 from regdb.meaning import Judgement
 from regdb.truth import spell
+from regdb.turning import changes
 from regdb_compiler.law_tests.outcome import Outcome, Tally
 
 WIDTH = 80
