@@ -3,7 +3,6 @@
 from pathlib import Path
 
 import pytest
-
 from regdb_compiler.driver import Build, build
 
 

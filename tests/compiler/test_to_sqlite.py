@@ -15,15 +15,15 @@ from pathlib import Path
 
 import pytest
 import sqlite_utils
-
-from regdb.content_hash import content_hash
-from regdb.schema import APPLICATION_ID, INDEXES, META_KEYS, PAPER_COLUMNS, TABLES, USER_VERSION, VIEWS
-from regdb.vocabulary import read_date
 from regdb_compiler.diagnostics import Diagnostic, Place, RegdbInputError
 from regdb_compiler.driver import Build, build
 from regdb_compiler.emit import to_sqlite
 from regdb_compiler.emit.to_sqlite import write_database
 from regdb_runtime.database import RegulationDatabase
+
+from regdb.content_hash import content_hash
+from regdb.schema import APPLICATION_ID, INDEXES, META_KEYS, PAPER_COLUMNS, TABLES, USER_VERSION, VIEWS
+from regdb.vocabulary import read_date
 
 
 @pytest.fixture(scope="module")
@@ -220,7 +220,7 @@ def test_rows_that_name_what_is_not_there_are_refused(small: Build, tmp_path: Pa
     with pytest.raises(sqlite3.IntegrityError):
         to_sqlite.write_tables(tables, tmp_path / "r.sqlite")
     assert not (tmp_path / "r.sqlite").exists()
-    monkeypatch.setattr(to_sqlite, "_open", lambda connection: None)  # foreign keys off: the check before the move still sees it
+    monkeypatch.setattr(to_sqlite, "_open", lambda _: None)  # foreign keys off: the check before the move still sees it
     with pytest.raises(sqlite3.IntegrityError, match="1 rows name what is not there"):
         to_sqlite.write_tables(tables, tmp_path / "r.sqlite")
 
