@@ -21,9 +21,10 @@ def command(
     on: Annotated[str, typer.Option("--on", help="Day as 2026-03-02; default: today.")] = "",
     db: Annotated[Path | None, typer.Option("--db", help="Compiled database; default: compiled from the codes.")] = None,
     codes: Annotated[Path | None, typer.Option("--codes", help="Folder of codes.")] = None,
+    everything: Annotated[bool, typer.Option("--all", help="Show long lists whole.")] = False,
     format_: Annotated[str, typer.Option("--format", help="text or json.")] = "text",
 ) -> None:
     """Ask whether a manoeuvre is lawful in a scene."""
     asked = ask(scene, fact, current, following, place, on, db, codes, format_)
-    typer.echo(json.dumps(asked.verdict.to_dict(), indent=2) if format_ == "json" else verdict_text(asked))
+    typer.echo(json.dumps(asked.verdict.to_dict(), indent=2) if format_ == "json" else verdict_text(asked, everything=everything))
     raise typer.Exit(asked.exit_code)
