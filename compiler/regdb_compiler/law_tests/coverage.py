@@ -83,11 +83,11 @@ class _Seen:
 
 @dataclass(frozen=True, slots=True)
 class _Context:
-    """What the items of one row depend on besides it: the machine, the other rows, the ids that something displaces."""
+    """What the items of one row depend on besides it: the machine, the other rows, what displaces an id."""
 
     machine: StateMachine
     by_id: dict[str, Regulation]
-    targeted: set[str]
+    displacers: dict[str, list[Regulation]]
 
 
 def cover(build: Build, outcomes: Iterable[Outcome]) -> Coverage:
@@ -97,8 +97,11 @@ def cover(build: Build, outcomes: Iterable[Outcome]) -> Coverage:
         if outcome.status == "passed" and outcome.judgement is not None:
             for rule in _shown(outcome, outcome.judgement):
                 _record(seen[id(rule)], rule, outcome.judgement)
-    targeted = {target for row in build.rows for target in row.regulation.targets}
-    context = _Context(build.corpus.machine, {row.regulation.id: row.regulation for row in build.rows}, targeted)
+    displacers: dict[str, list[Regulation]] = {}
+    for row in build.rows:
+        for target in row.regulation.targets:
+            displacers.setdefault(target, []).append(row.regulation)
+    context = _Context(build.corpus.machine, {row.regulation.id: row.regulation for row in build.rows}, displacers)
     return Coverage(tuple(_row(row, seen[id(row.regulation)], context) for row in build.rows))
 
 
@@ -168,12 +171,18 @@ def _rule_items(row: Row, seen: _Seen, context: _Context) -> Iterator[Item]:
         yield Item("rule", "never fails to hold", name, "false" in seen.marks)
     if not rule.legality and rule.force != "advisory":
         yield Item("rule", "never broken", name, "broken" in seen.marks)
-    if rule.id in context.targeted:
+    if any(_meet(rule, other) for other in context.displacers.get(rule.id, ())):
         yield Item("rule", "never displaced", name, "defeated" in seen.marks)
     for kind, names in (("exception_to", entry.doc.exception_to), ("overrides", entry.doc.overrides)):
         for position, written in enumerate(names):
             shown = any(f"displaces {target}" in seen.marks for target in _targets_of(written, rule, context))
             yield Item("rule", f"never displaces {written}", entry.place(kind, position), shown)
+
+
+def _meet(a: Regulation, b: Regulation) -> bool:
+    """Whether there is a day on which both are in force."""
+    first = max(a.effective or 1, b.effective or 1)
+    return a.in_force(first) and b.in_force(first)
 
 
 def _targets_of(written: str, rule: Regulation, context: _Context) -> Iterator[str]:
