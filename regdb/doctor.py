@@ -12,7 +12,7 @@ from dataclasses import dataclass
 from importlib import metadata
 from pathlib import Path
 
-from regdb.front import FrontError, cache_folder, codes_folder
+from regdb.front import FrontError, added_codes, cache_folder, codes_folder
 from regdb.schema import MAJOR, MINOR
 from regdb.version import VERSION
 
@@ -49,6 +49,7 @@ def examine() -> Iterator[Line]:
     yield from _sqlite()
     yield from _packages()
     yield _codes()
+    yield from _added()
     yield _cache()
 
 
@@ -123,6 +124,15 @@ def _codes() -> Line:
     sections = sum(1 for path in folder.glob("*/*.yaml") if path.stem[:1].isdigit())
     fine = (folder / "jurisdictions.yaml").is_file() and sections > 0
     return Line("codes", f"{folder} ({sections} sections)" if fine else f"{folder} holds no codes", fine)
+
+
+def _added() -> Iterator[Line]:
+    """The folders that add to the codes, if there are any."""
+    try:
+        for folder in added_codes():
+            yield Line("codes added", str(folder))
+    except FrontError as error:
+        yield Line("codes added", str(error), fine=False)
 
 
 def _cache() -> Line:

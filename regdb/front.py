@@ -3,9 +3,20 @@
 from __future__ import annotations
 
 import importlib
+import importlib.util
 import os
+from collections.abc import Iterable
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from importlib.metadata import EntryPoint
+
+CODES_GROUP = "regdb.codes"
+"""Entry point group of packages that add jurisdictions: each names a package whose folder holds them."""
+
+ADDED_CODES = "REGDB_ADDED_CODES"
+"""Environment variable of folders that add jurisdictions, separated as in PATH."""
 
 
 class FrontError(Exception):
@@ -26,6 +37,33 @@ def codes_folder(codes: Path | None) -> Path:
         return codes
     here = Path("codes")
     return here if (here / "jurisdictions.yaml").is_file() else shipped_codes()
+
+
+def added_codes(points: Iterable[EntryPoint] | None = None) -> tuple[Path, ...]:
+    """Folders that add to whatever codes are read: those ADDED_CODES names, then those of installed packages. Raises FrontError.
+
+    No code of a package is run to find its folder.
+    """
+    if points is None:
+        from importlib.metadata import entry_points
+
+        points = entry_points(group=CODES_GROUP)
+    named = [Path(part) for part in os.environ.get(ADDED_CODES, "").split(os.pathsep) if part]
+    for folder in named:
+        if not folder.is_dir():
+            raise FrontError(f"{ADDED_CODES} names {folder}, which is no folder")
+    return (*named, *(_package_folder(point) for point in sorted(points, key=lambda item: (item.name, item.value))))
+
+
+def _package_folder(point: EntryPoint) -> Path:
+    try:
+        found = importlib.util.find_spec(point.value)
+    except (ImportError, ValueError):
+        found = None
+    folders = [] if found is None else list(found.submodule_search_locations or ())
+    if not folders:
+        raise FrontError(f"the codes of entry point `{point.name}` cannot be found: {point.value} is no package")
+    return Path(folders[0])
 
 
 def author_side(module: str) -> Any:

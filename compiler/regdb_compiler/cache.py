@@ -5,12 +5,12 @@ from __future__ import annotations
 import hashlib
 import json
 import os
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from regdb.completion import names_file
-from regdb.front import FrontError
+from regdb.front import FrontError, added_codes
 from regdb.schema import APPLICATION_ID, USER_VERSION
 from regdb.version import VERSION
 from regdb_compiler.emit.in_place import folder_beside, move_in
@@ -46,7 +46,7 @@ def cached_database(codes: Path, cache: Path) -> Path:
 def input_hash(codes: Path) -> str:
     """Hex SHA-256 of the names and bytes of all input files, the versions of regdb and its schema, and the compiler's own files."""
     digest = hashlib.sha256(f"regdb {VERSION} schema {USER_VERSION}\n".encode())
-    for name, path in input_files(codes):
+    for name, path in all_input_files(codes, added_codes()):
         try:
             data = path.read_bytes()
         except OSError as error:
@@ -61,6 +61,13 @@ def input_files(codes: Path) -> Iterator[tuple[str, Path]]:
     """Every YAML file of a codes folder with its name in it, in order of the names; hidden ones are no input."""
     found = sorted((path.relative_to(codes).as_posix(), path) for path in codes.rglob("*.yaml"))
     return ((name, path) for name, path in found if not any(part.startswith(".") for part in name.split("/")))
+
+
+def all_input_files(codes: Path, added: Iterable[Path]) -> Iterator[tuple[str, Path]]:
+    """The files of the codes, then those of the folders added to them, whose names begin with their folder's."""
+    yield from input_files(codes)
+    for folder in added:
+        yield from ((f"{folder.resolve().name}/{name}", path) for name, path in input_files(folder))
 
 
 def _own_files() -> Iterator[str]:

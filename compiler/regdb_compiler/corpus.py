@@ -2,21 +2,23 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 from pathlib import Path
 
+from regdb.front import FrontError, added_codes
 from regdb.jurisdiction import Jurisdiction, JurisdictionTree
 from regdb.states import StateMachine
-from regdb.vocabulary import Attribute, Fact, Vocabulary
+from regdb.vocabulary import Fact, Vocabulary
 from regdb_compiler import documents
 from regdb_compiler.diagnostics import Diagnostic, Place
 from regdb_compiler.entries import CaseEntry, RegulationEntry, SectionEntry, VersionEntry
 from regdb_compiler.parse import parse_document
-from regdb_compiler.read_vocabulary import read_attributes, read_fact, read_jurisdictions, read_states
+from regdb_compiler.read_vocabulary import jurisdictions_of, read_attributes, read_fact, read_jurisdictions, read_states
 from regdb_compiler.source import Mapping as MappingNode
-from regdb_compiler.source import Sequence, SourceFile, read_source
+from regdb_compiler.source import Sequence as SequenceNode
+from regdb_compiler.source import SourceFile, read_source
 
 CORPUS_RULES = (
     ("R101", "duplicate-section", "Two files hold the same section of one code; all its versions belong in one file."),
@@ -26,7 +28,10 @@ CORPUS_RULES = (
 
 @dataclass(frozen=True)
 class Corpus:
-    """Everything that was read. `diagnostics` are the reading problems; sections that could not be read are left out."""
+    """Everything that was read. `diagnostics` are the reading problems; sections that could not be read are left out.
+
+    `added` are the folders merged into the codes; names of files begin with the name of the folder that they stand in.
+    """
 
     root: Path
     files: Mapping[str, SourceFile]
@@ -37,6 +42,7 @@ class Corpus:
     cases: tuple[CaseEntry, ...]
     fact_places: Mapping[str, Place] = field(default_factory=dict)
     diagnostics: tuple[Diagnostic, ...] = ()
+    added: tuple[Path, ...] = ()
 
     @cached_property
     def versions(self) -> tuple[VersionEntry, ...]:
@@ -67,43 +73,67 @@ class Corpus:
 
 
 class _Reader:
-    """Collects files and problems while the folder is read."""
+    """Collects files and problems while the folders are read: the codes, then what is added to them."""
 
-    def __init__(self, root: Path) -> None:
-        self.root, self.base = root, root.parent
+    def __init__(self, root: Path, added: tuple[Path, ...] = ()) -> None:
+        self.root, self.added, self.folders = root, added, (root, *added)
         self.files: dict[str, SourceFile] = {}
         self.problems: list[Diagnostic] = []
 
     def read(self, path: Path) -> SourceFile:
-        file = read_source(path, self.base)
+        base = next(folder.parent for folder in self.folders if path.is_relative_to(folder))
+        file = read_source(path, base)
         self.files[file.path] = file
         self.problems += file.diagnostics
         return file
 
 
-def read_corpus(codes: Path) -> Corpus:
-    """Read a codes folder. Never raises for what is in it: problems are the corpus's diagnostics."""
+def read_corpus(codes: Path, added: Sequence[Path] | None = None) -> Corpus:
+    """Read a codes folder and what is added to it (by default, what is installed: `regdb.front.added_codes`).
+
+    Never raises for what is in the folders: problems are the corpus's diagnostics. Raises FrontError for a folder added
+    that is not there or bears the name of another.
+    """
     codes = codes.resolve()
-    reader = _Reader(codes)
+    reader = _Reader(codes, tuple(folder.resolve() for folder in (added_codes() if added is None else added)))
+    _refuse_like_names(reader.folders)
     tree = _read_tree(reader)
     machine = _read_machine(reader)
     vocabulary, places = _read_vocabulary(reader)
     sections: list[SectionEntry] = []
     cases: list[CaseEntry] = []
-    for folder in sorted(path for path in codes.iterdir() if path.is_dir()) if codes.is_dir() else ():
-        if folder.name in {"vocabulary", "interpretations", "schema"} or folder.name.startswith((".", "_")):
-            continue
-        jurisdiction = tree.get(folder.name) if folder.name in tree else None
-        if jurisdiction is None or jurisdiction.code != folder.name:
-            known = ", ".join(sorted(item.code for item in tree))
-            place = Place(f"{codes.name}/{folder.name}", 1, 1, 1, 1)
-            message = f"no jurisdiction has the code `{folder.name}`"
-            reader.problems.append(Diagnostic("R103", "unknown-code", "error", message, place, note=f"codes: {known}"))
-            continue
+    for folder, jurisdiction in _code_folders(reader, tree):
         sections += _read_sections(reader, folder, jurisdiction)
         cases += _read_cases(reader, folder, jurisdiction)
     sections = _without_duplicates(sections, reader.problems)
-    return Corpus(codes, reader.files, vocabulary, machine, tree, tuple(sections), tuple(cases), places, tuple(reader.problems))
+    return Corpus(
+        codes, reader.files, vocabulary, machine, tree, tuple(sections), tuple(cases), places, tuple(reader.problems), reader.added
+    )
+
+
+def _refuse_like_names(folders: Sequence[Path]) -> None:
+    """Files are told apart by the name of their folder, in findings and manifests, so that these do not depend on the machine."""
+    seen: dict[str, Path] = {}
+    for folder in folders:
+        if folder.name in seen:
+            raise FrontError(f"{folder} cannot be added to {seen[folder.name]}: the two folders have the same name")
+        seen[folder.name] = folder
+
+
+def _code_folders(reader: _Reader, tree: JurisdictionTree) -> Iterator[tuple[Path, Jurisdiction]]:
+    """Every folder of sections with the jurisdiction whose code it is."""
+    for root in reader.folders:
+        for folder in sorted(path for path in root.iterdir() if path.is_dir()) if root.is_dir() else ():
+            if folder.name in {"vocabulary", "interpretations", "schema"} or folder.name.startswith((".", "_")):
+                continue
+            jurisdiction = tree.get(folder.name) if folder.name in tree else None
+            if jurisdiction is not None and jurisdiction.code == folder.name:
+                yield folder, jurisdiction
+                continue
+            known = ", ".join(sorted(item.code for item in tree))
+            place = Place(f"{root.name}/{folder.name}", 1, 1, 1, 1)
+            message = f"no jurisdiction has the code `{folder.name}`"
+            reader.problems.append(Diagnostic("R103", "unknown-code", "error", message, place, note=f"codes: {known}"))
 
 
 def _read_tree(reader: _Reader) -> JurisdictionTree:
@@ -111,7 +141,31 @@ def _read_tree(reader: _Reader) -> JurisdictionTree:
     doc, problems = parse_document(documents.JurisdictionsFile, file)
     tree, more = read_jurisdictions(doc, file) if doc is not None else (None, [])
     reader.problems += [*problems, *more]
-    return tree or JurisdictionTree([])
+    return _with_added(reader, tree or JurisdictionTree([]), file)
+
+
+def _with_added(reader: _Reader, tree: JurisdictionTree, first: SourceFile) -> JurisdictionTree:
+    """The tree with the jurisdictions of the folders added; what is declared twice or hangs in the air is reported and left out."""
+    places = {name: _key_of(first, "jurisdictions", item.id) for item in tree for name in (item.id, item.code)}
+    for folder in reader.added:
+        if not (folder / "jurisdictions.yaml").exists():
+            continue
+        file = reader.read(folder / "jurisdictions.yaml")
+        doc, problems = parse_document(documents.JurisdictionsFile, file)
+        reader.problems += problems
+        for item in jurisdictions_of(doc) if doc is not None else ():
+            place = _key_of(file, "jurisdictions", item.id)
+            clash = places.get(item.id) or places.get(item.code)
+            if clash is not None:
+                message, related = f"jurisdiction `{item.id}` or its code `{item.code}` is declared twice", ((clash, "first declared here"),)
+                reader.problems.append(Diagnostic("R110", "bad-jurisdiction", "error", message, place, related=related))
+            elif item.parent is not None and item.parent not in {other.id for other in tree}:
+                message = f"jurisdiction `{item.id}` names a parent `{item.parent}` that is not declared before it"
+                reader.problems.append(Diagnostic("R110", "bad-jurisdiction", "error", message, place))
+            else:
+                places[item.id] = places[item.code] = place
+                tree = JurisdictionTree([*tree, item])
+    return tree
 
 
 def _read_machine(reader: _Reader) -> StateMachine:
@@ -119,14 +173,20 @@ def _read_machine(reader: _Reader) -> StateMachine:
     doc, problems = parse_document(documents.StatesFile, file)
     machine, more = read_states(doc, file) if doc is not None else (None, [])
     reader.problems += [*problems, *more]
+    for folder in reader.added:
+        if (folder / "states.yaml").exists():
+            place = Place(f"{folder.name}/states.yaml", 1, 1, 1, 1)
+            message = "a folder added to the codes cannot change the state machine"
+            reader.problems.append(Diagnostic("R420", "bad-state-machine", "error", message, place))
     return machine or StateMachine([], [], "")
 
 
 def _read_vocabulary(reader: _Reader) -> tuple[Vocabulary, dict[str, Place]]:
     facts: dict[str, Fact] = {}
     places: dict[str, Place] = {}
+    bounded: dict[str, Place] = {}
     attributes: list[tuple[str, documents.Attribute, SourceFile]] = []
-    for path in sorted((reader.root / "vocabulary").glob("*.yaml")):
+    for path in (path for folder in reader.folders for path in sorted((folder / "vocabulary").glob("*.yaml"))):
         file = reader.read(path)
         doc, problems = parse_document(documents.VocabularyFile, file)
         reader.problems += problems
@@ -142,14 +202,15 @@ def _read_vocabulary(reader: _Reader) -> tuple[Vocabulary, dict[str, Place]]:
             reader.problems += more
             if fact is not None:
                 facts[name] = fact
-        attributes += [(name, item, file) for name, item in doc.attributes.items()]
+        for name, attribute in doc.attributes.items():
+            place = _key_of(file, "attributes", name)
+            if (first := bounded.setdefault(name, place)) != place:
+                reader.problems.append(_twice(name, place, first, "attribute"))
+                continue
+            attributes.append((name, attribute, file))
     read, problems = read_attributes(attributes, facts)
     reader.problems += problems
-    return Vocabulary(facts.values(), _unique(read)), places
-
-
-def _unique(attributes: Iterable[Attribute]) -> list[Attribute]:
-    return list({item.name: item for item in attributes}.values())
+    return Vocabulary(facts.values(), read), places
 
 
 def _key_of(file: SourceFile, *path: str) -> Place:
@@ -159,8 +220,8 @@ def _key_of(file: SourceFile, *path: str) -> Place:
     return node.key_place(path[-1]) if isinstance(node, MappingNode) else Place(file.path, 1, 1, 1, 1)
 
 
-def _twice(name: str, place: Place, first: Place) -> Diagnostic:
-    return Diagnostic("R411", "duplicate-fact", "error", f"fact `{name}` is declared twice", place, related=((first, "first declared here"),))
+def _twice(name: str, place: Place, first: Place, kind: str = "fact") -> Diagnostic:
+    return Diagnostic("R411", "duplicate-fact", "error", f"{kind} `{name}` is declared twice", place, related=((first, "first declared here"),))
 
 
 def _read_sections(reader: _Reader, folder: Path, jurisdiction: Jurisdiction) -> list[SectionEntry]:
@@ -183,7 +244,7 @@ def _read_cases(reader: _Reader, folder: Path, jurisdiction: Jurisdiction) -> li
         doc, problems = parse_document(documents.Cases, file)
         reader.problems += problems
         nodes = file.root.get("cases") if doc is not None and isinstance(file.root, MappingNode) else None
-        if doc is not None and isinstance(nodes, Sequence):
+        if doc is not None and isinstance(nodes, SequenceNode):
             pairs = zip(doc.cases, nodes.items, strict=True)
             found += [CaseEntry(item, node, file, jurisdiction) for item, node in pairs if isinstance(node, MappingNode)]
     return found

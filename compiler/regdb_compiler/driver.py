@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
@@ -43,14 +44,14 @@ class Build:
         return any(item.level == "error" for item in self.diagnostics)
 
 
-def build(codes: Path) -> Build:
-    """Read and resolve a codes folder. Never raises for what is in it."""
+def build(codes: Path, added: Sequence[Path] | None = None) -> Build:
+    """Read and resolve a codes folder and what is added to it; never raises for what is in them. `added` is as in `read_corpus`."""
     with collector_paused():
-        return _build(codes)
+        return _build(codes, added)
 
 
-def _build(codes: Path) -> Build:
-    corpus = read_corpus(codes)
+def _build(codes: Path, added: Sequence[Path] | None) -> Build:
+    corpus = read_corpus(codes, added)
     resolution = resolve(corpus)
     targets = find_targets(corpus)
     authority = Authority(resolution, targets)

@@ -92,11 +92,15 @@ def read_attributes(
 
 def read_jurisdictions(doc: documents.JurisdictionsFile, file: SourceFile) -> tuple[JurisdictionTree | None, list[Diagnostic]]:
     """The tree, or why it is none."""
-    items = [_jurisdiction(name, item) for name, item in doc.jurisdictions.items()]
     try:
-        return JurisdictionTree(items), []
+        return JurisdictionTree(jurisdictions_of(doc)), []
     except JurisdictionError as error:
         return None, [_bad(file, "R110", "bad-jurisdiction", str(error), ("jurisdictions",))]
+
+
+def jurisdictions_of(doc: documents.JurisdictionsFile) -> list[Jurisdiction]:
+    """The jurisdictions of a file, in its order."""
+    return [_jurisdiction(name, item) for name, item in doc.jurisdictions.items()]
 
 
 def _jurisdiction(name: str, doc: documents.Jurisdiction) -> Jurisdiction:

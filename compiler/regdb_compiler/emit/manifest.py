@@ -10,7 +10,7 @@ from dataclasses import asdict
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from regdb_compiler.cache import input_files
+from regdb_compiler.cache import all_input_files
 from regdb_compiler.diagnostics import Diagnostic
 from regdb_compiler.emit.files import FileRecord, record_of
 
@@ -24,7 +24,8 @@ FORM = "urn:regdb:manifest:1.0"
 def write_manifest(
     build: Build, connection: sqlite3.Connection, meta: dict[str, str], outputs: Iterable[FileRecord], path: Path
 ) -> None:
-    """Everything about one compilation; input names are relative to the codes folder, output names to the manifest."""
+    """Everything about one compilation; input names are relative to the codes folder (of a folder added to the codes they begin
+    with its name), output names to the manifest."""
     document = {
         "schema": FORM,
         "regdb_version": meta["regdb_version"],
@@ -32,7 +33,7 @@ def write_manifest(
         "content_hash": meta["content_hash"],
         "in_force_on": meta.get("in_force_on"),
         "notice": meta["notice"],
-        "inputs": [asdict(record_of(file, name)) for name, file in input_files(build.corpus.root)],
+        "inputs": [asdict(record_of(file, name)) for name, file in all_input_files(build.corpus.root, build.corpus.added)],
         "outputs": [asdict(item) for item in outputs],
         "counts": _counts(build, connection, meta),
         "confidence": dict(sorted(Counter(item.doc.source.confidence for item in build.corpus.sections).items())),

@@ -59,7 +59,7 @@ def write_example(example: Example, folder: Path) -> Path:
 def build_example(example: Example, folder: Path) -> Build:
     """The small codes folder with the example in it, read and resolved."""
     write_example(example, folder)
-    return build(folder / "codes")
+    return build(folder / "codes", added=())
 
 
 def find_in_example(rule: Rule, text: str, folder: Path) -> list[Diagnostic]:

@@ -28,10 +28,10 @@ class Mended:
 
 
 def mend(codes: Path, findings: Callable[[Build], tuple[Diagnostic, ...]], kinds: tuple[FixKind, ...]) -> Mended:
-    """The texts after all fixes of these kinds; the folder itself stays as it is."""
+    """The texts after all fixes of these kinds; the folder itself stays as it is. Folders added to the codes are not mended."""
     found = build(codes)
     before = found.corpus.texts
-    result = apply_fixes(findings(found), before, kinds)
+    result = apply_fixes(_own(findings(found), found), before, kinds)
     texts, applied, skipped = dict(result.texts), len(result.applied), len(result.skipped)
     if not texts:
         return Mended(skipped=skipped)
@@ -42,12 +42,16 @@ def mend(codes: Path, findings: Callable[[Build], tuple[Diagnostic, ...]], kinds
             for path, text in result.texts.items():
                 (copy.parent / path).write_text(text, "utf-8", newline="")
             found = build(copy)
-            result = apply_fixes(findings(found), found.corpus.texts, kinds)
+            result = apply_fixes(_own(findings(found), found), found.corpus.texts, kinds)
             if not result.texts:
                 break
             texts.update(result.texts)
             applied += len(result.applied)
     return Mended({path: text for path, text in texts.items() if text != before[path]}, before, applied, skipped)
+
+
+def _own(findings: tuple[Diagnostic, ...], found: Build) -> tuple[Diagnostic, ...]:
+    return tuple(item for item in findings if item.place.path.startswith(f"{found.corpus.root.name}/"))
 
 
 def unified_diff(mended: Mended) -> str:
