@@ -10,6 +10,7 @@ from regdb.units import from_si, show_number
 from regdb.vocabulary import show_value
 
 _BINDING = {Or: 1, And: 2, Not: 3}
+_encode = json.JSONEncoder(separators=(",", ":"), ensure_ascii=False).encode
 
 
 def show(node: Node) -> str:
@@ -69,7 +70,7 @@ def show_linear(expression: Linear, kind: str, unit: str) -> str:
 
 def to_json(node: Node) -> str:
     """The tree as one line of JSON, the form the database stores."""
-    return json.dumps(to_data(node), separators=(",", ":"), ensure_ascii=False)
+    return _encode(to_data(node))
 
 
 def from_json(text: str) -> Node:

@@ -101,7 +101,7 @@ def test_without_pyarrow_the_message_says_what_to_type_and_nothing_changes(
     real = builtins.__import__
     monkeypatch.setattr(builtins, "__import__", import_)
     with pytest.raises(FrontError, match="Parquet needs pandas"):
-        to_parquet.write_parquet(None, tmp_path / "x")  # type: ignore[arg-type]  # fails before it is used
+        to_parquet.write_parquet([], tmp_path / "x")
 
 
 def test_other_files_of_the_folder_stay(small: Build, tmp_path: Path) -> None:

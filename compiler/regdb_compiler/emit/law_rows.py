@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
+from functools import lru_cache
 from typing import TYPE_CHECKING
 
 from regdb.citation import section_key
@@ -88,7 +89,8 @@ def _regulation(row: Row, key: int, version: int) -> Line:
     )  # fmt: skip
 
 
-def in_words(states: Iterable[str]) -> str:
+@lru_cache(maxsize=4096)
+def in_words(states: tuple[str, ...]) -> str:
     """State names in the paper's style, which the state machine reads back: `Car Following; Go Straight; Overtaking`."""
     return "; ".join(name.replace("_", " ").title() for name in states)
 

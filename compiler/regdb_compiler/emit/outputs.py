@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 from regdb_compiler.emit import datapackage, manifest, to_csv, to_json, to_parquet
 from regdb_compiler.emit.files import FileRecord, record_of
 from regdb_compiler.emit.in_place import folder_beside, move_in
+from regdb_compiler.emit.table import read_lines
 from regdb_compiler.emit.to_sqlite import Summary, write_database
 
 if TYPE_CHECKING:
@@ -46,11 +47,12 @@ def write_outputs(build: Build, folder: Path, on: int | None = None, *, parquet:
 def _write_tables(build: Build, connection: sqlite3.Connection, beside: Path, *, parquet: bool) -> tuple[FileRecord, ...]:
     meta = dict(connection.execute("SELECT key, value FROM regdb_meta"))
     to_csv.write_paper_csv(connection, beside / to_csv.PAPER_FILE)
-    to_csv.write_full_csv(connection, beside / to_csv.FULL_FILE)
-    to_json.write_json(connection, meta, beside / to_json.FILE)
+    lines = read_lines(connection)
+    to_csv.write_full_csv(lines, beside / to_csv.FULL_FILE)
+    to_json.write_json(lines, meta, beside / to_json.FILE)
     names = [DATABASE, to_csv.PAPER_FILE, to_csv.FULL_FILE, to_json.FILE]
     if parquet:
-        to_parquet.write_parquet(connection, beside / to_parquet.FILE)
+        to_parquet.write_parquet(lines, beside / to_parquet.FILE)
         names.append(to_parquet.FILE)
     files = [record_of(beside / name) for name in names]
     datapackage.write_datapackage(meta, files, beside / datapackage.FILE)

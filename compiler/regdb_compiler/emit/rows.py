@@ -25,9 +25,12 @@ class Day:
         return day is None or ((effective is None or effective <= day) and (until is None or day < until))
 
 
+_encode = json.JSONEncoder(separators=(",", ":"), ensure_ascii=False).encode
+
+
 def compact(data: Any) -> str:
     """JSON on one line, in the order given, letters as they are."""
-    return json.dumps(data, separators=(",", ":"), ensure_ascii=False)
+    return _encode(data)
 
 
 def iso(day: int | None) -> str | None:

@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import Any
 
 from regdb.schema import PAPER_COLUMNS
-from regdb_compiler.emit.table import COLUMNS, read_lines
+from regdb_compiler.emit.table import COLUMNS, Row
 
 PAPER_FILE, FULL_FILE = "paper.csv", "regulations.csv"
 
@@ -23,10 +23,10 @@ def write_paper_csv(connection: sqlite3.Connection, path: Path) -> None:
     _write(path, PAPER_COLUMNS, connection.execute(f"SELECT {chosen} FROM paper_table"))
 
 
-def write_full_csv(connection: sqlite3.Connection, path: Path) -> None:
+def write_full_csv(lines: Iterable[Row], path: Path) -> None:
     """Every column of `table.COLUMNS`; truth as TRUE and FALSE, lists and objects as JSON, open dates empty."""
-    lines = ([_cell(column.kind, value) for column, value in zip(COLUMNS, line, strict=True)] for line in read_lines(connection))
-    _write(path, [column.name for column in COLUMNS], lines)
+    cells = ([_cell(column.kind, value) for column, value in zip(COLUMNS, line, strict=True)] for line in lines)
+    _write(path, [column.name for column in COLUMNS], cells)
 
 
 def _cell(kind: str, value: Any) -> Any:
