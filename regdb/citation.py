@@ -41,8 +41,9 @@ class Citation:
     def __lt__(self, other: "Citation") -> bool:
         return self._key() < other._key()
 
-    def _key(self) -> tuple[str, tuple[tuple[int, int, str], ...], tuple[tuple[int, int, str], ...]]:
-        return self.code, section_key(self.section), tuple(_part_key(part) for part in self.parts)
+    def _key(self) -> tuple[str, tuple[tuple[int, int, str], ...], tuple[tuple[int, int, str], ...], str]:
+        """The text comes last, so that 15.20.010 and 15.20.10 have an order too."""
+        return self.code, section_key(self.section), tuple(_part_key(part) for part in self.parts), str(self)
 
 
 def _part_key(part: str) -> tuple[int, int, str]:
