@@ -15,6 +15,7 @@ from regdb_compiler.lint.registry import all_rules
 from regdb_compiler.lint.rule import Rule
 from regdb_compiler.lint.selection import Selection
 from regdb_compiler.lint.view import view_of
+from regdb_compiler.source import collector_paused
 
 
 class RuleFailureError(Exception):
@@ -44,7 +45,8 @@ def lint(
 def find(build: Build, rules: Sequence[Rule], today: datetime.date | None = None) -> tuple[Diagnostic, ...]:
     """What these rules find on a build, before comments and baseline. Raises RuleFailureError."""
     view_of(build, today)
-    return in_order(finding for rule in rules for finding in _run(rule, build))
+    with collector_paused():
+        return in_order(finding for rule in rules for finding in _run(rule, build))
 
 
 def costs(build: Build, rules: Sequence[Rule]) -> list[tuple[float, Rule]]:

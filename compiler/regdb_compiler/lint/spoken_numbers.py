@@ -29,7 +29,7 @@ _SPOKEN = re.compile(
     r"(?P<unit>" + "|".join(word.replace(" ", r"\s+") for word in sorted(_UNITS, key=len, reverse=True)) + r")\b",
     re.IGNORECASE,
 )
-_HINT = re.compile(r"feet|foot|ft|inch|mile|mph|second|pound|lb", re.IGNORECASE)
+_HINT = re.compile(r"(?:[0-9a-z][ -])(?:feet|foot|ft|inch|miles|mph|second|pound|lb)")
 
 
 @dataclass(frozen=True, slots=True)
@@ -48,10 +48,10 @@ class Spoken:
         return show_si(self.si, self.unit)
 
 
-@lru_cache(maxsize=8192)
+@lru_cache(maxsize=65536)
 def spoken_numbers(text: str) -> tuple[Spoken, ...]:
     """The quantities that a text speaks of, in order; numbers without a unit are none."""
-    if not _HINT.search(text):
+    if not _HINT.search(" ".join(text.lower().split())):
         return ()
     return tuple(_spoken(match) for match in _SPOKEN.finditer(text) if _unit(match))
 

@@ -41,10 +41,20 @@ def _parts(raw: Raw, text: str, join: RawJoin | None) -> Iterator[Part]:
         end = text.index(")", end) + 1
     if isinstance(raw, RawKnown) and (opening := _BEFORE.search(text[:start])):
         start = opening.start()
+    if isinstance(raw, RawNot) and (negation := re.search(_nots(raw), text[:start])):
+        start = negation.start()
     yield Part(raw, start, end, join)
     inner = raw.parts if isinstance(raw, RawJoin) else (raw.part,) if isinstance(raw, RawNot) else ()
     for part in inner:
         yield from _parts(part, text, raw if isinstance(raw, RawJoin) else None)
+
+
+def _nots(raw: RawNot) -> str:
+    """What stands before the first word of a negation: as many `not` as it has, parentheses, `known(`."""
+    count, inner = 1, raw.part
+    while isinstance(inner, RawNot):
+        count, inner = count + 1, inner.part
+    return rf"(?:not[\s(]*){{{count}}}(?:known\s*\(\s*)?\Z"
 
 
 def _last(raw: Raw) -> Raw:

@@ -30,8 +30,8 @@ def check(build: Build) -> Iterator[Diagnostic]:
     seen: dict[int, str | None] = {}
     for rule in view.first:
         for key, node in (("when", rule.when), ("unless", rule.unless)):
-            if not isinstance(node, And) and (node is None or len(view.literals(node)) < 2):
-                continue
+            if node is None or len(set(view.facts(node))) == len(view.literals(node)):
+                continue  # two literals that exclude each other speak of one fact
             if id(node) not in seen:
                 parts = (contradiction(j.parts, build.corpus.vocabulary) for j in joins(node) if isinstance(j, And))
                 seen[id(node)] = next((fact for fact in parts if fact), None)

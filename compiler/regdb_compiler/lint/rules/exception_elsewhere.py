@@ -32,13 +32,14 @@ LEVEL: Level = "error"
 def check(build: Build) -> Iterator[Diagnostic]:
     """One finding for each name whose regulation shares no transition with the naming one."""
     by_entry = build.resolution.by_entry
-    for entry, place, targets in named_targets(build):
+    for name in named_targets(build):
+        entry, targets = name.entry, name.targets
         ours = [rule for rule in by_entry.get(entry, ()) if rule.sound]
         theirs = [rule for target in targets for rule in by_entry.get(target, ()) if rule.sound]
         if ours and theirs and not any(_meet(ours[0], other) for other in theirs):
             message = f"{entry.id} and {targets[0].id} have no transition in common"
             related = ((targets[0].key_place("states"), "its states"),)
-            yield Diagnostic(CODE, NAME, LEVEL, message, place, related=related, law=str(entry.citation))
+            yield Diagnostic(CODE, NAME, LEVEL, message, name.place, related=related, law=str(entry.citation))
 
 
 def _meet(one: Resolved, other: Resolved) -> bool:

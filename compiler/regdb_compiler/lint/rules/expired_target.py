@@ -32,11 +32,11 @@ LEVEL: Level = "warning"
 
 def check(build: Build) -> Iterator[Diagnostic]:
     """One finding for each name whose regulations all end while the naming one goes on, and does not name what comes after them."""
-    named = tuple(named_targets(build))
     successors: dict[RegulationEntry, list[RegulationEntry]] = {}
-    for entry, _, targets in named:
-        successors.setdefault(entry, []).extend(targets)
-    for entry, place, targets in named:
+    for name in named_targets(build):
+        successors.setdefault(name.entry, []).extend(name.targets)
+    for name in named_targets(build):
+        entry, targets = name.entry, name.targets
         ends = [target.until for target in targets]
         if None in ends or not any(entry.overlaps(target) for target in targets):
             continue
@@ -47,4 +47,4 @@ def check(build: Build) -> Iterator[Diagnostic]:
             day = datetime.date.fromordinal(last).isoformat()
             message = f"{targets[0].id} is in force until {day} only, and {entry.id} goes on"
             related = ((targets[-1].place("id"), "expires"),)
-            yield Diagnostic(CODE, NAME, LEVEL, message, place, related=related, law=str(entry.citation))
+            yield Diagnostic(CODE, NAME, LEVEL, message, name.place, related=related, law=str(entry.citation))

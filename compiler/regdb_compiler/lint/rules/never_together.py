@@ -30,9 +30,10 @@ LEVEL: Level = "error"
 
 def check(build: Build) -> Iterator[Diagnostic]:
     """One finding for each name none of whose versions shares a day with any version of the naming regulation."""
-    for entry, place, targets in named_targets(build):
+    for name in named_targets(build):
+        entry, targets = name.entry, name.targets
         namers = build.corpus.by_id[entry.id]
         if not any(namer.overlaps(target) for namer in namers for target in targets):
             message = f"{entry.id} and {targets[0].id} are never in force on the same day"
             related = ((targets[0].place("id"), "named here"),)
-            yield Diagnostic(CODE, NAME, LEVEL, message, place, related=related, law=str(entry.citation))
+            yield Diagnostic(CODE, NAME, LEVEL, message, name.place, related=related, law=str(entry.citation))

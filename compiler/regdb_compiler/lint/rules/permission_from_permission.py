@@ -31,8 +31,9 @@ LEVEL: Level = "warning"
 
 def check(build: Build) -> Iterator[Diagnostic]:
     """One finding for each such name."""
-    for entry, place, targets in named_targets(build):
+    for name in named_targets(build):
+        entry, targets = name.entry, name.targets
         if entry.doc.legality and all(target.doc.legality for target in targets):
             message = f"{targets[0].id} is a permission itself, so {entry.id} defeats no prohibition by naming it"
             related = ((targets[0].place("legality"), "a permission"),)
-            yield Diagnostic(CODE, NAME, LEVEL, message, place, related=related, law=str(entry.citation))
+            yield Diagnostic(CODE, NAME, LEVEL, message, name.place, related=related, law=str(entry.citation))

@@ -25,7 +25,8 @@ LEVEL: Level = "warning"
 def check(build: Build) -> Iterator[Diagnostic]:
     """One finding for each override whose bounds are all those of its target."""
     by_entry = build.resolution.by_entry
-    for entry, place, targets in named_targets(build):
+    for name in named_targets(build):
+        entry, targets = name.entry, name.targets
         if not entry.doc.overrides:
             continue
         ours = next(({(limit.attribute, limit.bound) for limit in rule.limits} for rule in by_entry.get(entry, ())), set())
@@ -34,5 +35,5 @@ def check(build: Build) -> Iterator[Diagnostic]:
             if ours and ours == theirs and entry.doc.force == target.doc.force:
                 message = f"{target.id} says the same number"
                 related = ((target.place("attributes"), "the same"),)
-                yield Diagnostic(CODE, NAME, LEVEL, message, place, related=related, law=str(entry.citation))
+                yield Diagnostic(CODE, NAME, LEVEL, message, name.place, related=related, law=str(entry.citation))
                 break

@@ -21,8 +21,10 @@ Passes:
 from __future__ import annotations
 
 from collections.abc import Iterator
+from functools import lru_cache
 
 from regdb.condition import Compare
+from regdb.regulation import Limit
 from regdb.units import UnitError, parse_quantity
 from regdb.vocabulary import show_value
 from regdb_compiler.diagnostics import Diagnostic, Level, Place
@@ -34,8 +36,8 @@ from regdb_compiler.resolve import Resolved, constant_of
 CODE, NAME = "R813", "untested-boundary"
 LEVEL: Level = "info"
 NEAR = 0.1
-Boundary = tuple[str, float, str, str]
-"""The fact, its number in SI, the number as written, and `within` the condition or the attribute it stands in."""
+Boundary = tuple[str, float, Limit | Compare, str]
+"""The fact, its number in SI, what the number stands in, and the key of that: `when`, `unless` or the attribute."""
 
 
 def check(build: Build) -> Iterator[Diagnostic]:
@@ -45,7 +47,7 @@ def check(build: Build) -> Iterator[Diagnostic]:
         entry = rule.entry
         if not entry.doc.tests:
             continue
-        for fact, number, shown, where in _boundaries(view, rule):
+        for fact, number, bound, where in _boundaries(view, rule):
             values = list(_values(entry, fact))
             room = max(abs(number) * NEAR, 1.0 if number == 0 or _is_count(view, fact) else 0.0) * (1 + 1e-9)
             low = any(number - room <= value < number for value in values)
@@ -53,6 +55,7 @@ def check(build: Build) -> Iterator[Diagnostic]:
             at = any(abs(value - number) <= 1e-9 * max(1.0, abs(number)) for value in values)
             if (low + high + at) < 2:
                 missing = "at" if not at else "just above or below"
+                shown = bound.text if isinstance(bound, Limit) else show_value(number, bound.kind, bound.unit)
                 message = f"no tests on both sides of {shown}: none {missing} it"
                 yield Diagnostic(CODE, NAME, LEVEL, message, _place(entry, fact, where), law=str(entry.citation))
 
@@ -61,13 +64,13 @@ def _boundaries(view: View, rule: Resolved) -> Iterator[Boundary]:
     for limit in rule.limits:
         bound = constant_of(limit.bound)
         if bound is not None and rule.entry.doc.force not in {"advisory", "penalty_tier"}:
-            yield limit.fact, bound, limit.text, limit.attribute
+            yield limit.fact, bound, limit, limit.attribute
     for key, node in (("when", rule.when), ("unless", rule.unless)):
         for literal in view.literals(node) if node is not None else ():
             if isinstance(literal, Compare) and _is_bound(literal) and literal.left.terms[0][1] in _text(rule.entry, key):
                 coefficient, fact = literal.left.terms[0]
                 number = literal.right.constant / coefficient
-                yield fact, number, show_value(number, literal.kind, literal.unit), key
+                yield fact, number, literal, key
 
 
 def _is_bound(literal: Compare) -> bool:
@@ -89,11 +92,17 @@ def _values(entry: RegulationEntry, fact: str) -> Iterator[float]:
     short = fact.removeprefix("plan.")
     for test in entry.doc.tests:
         for told in (test.scene.get(fact), test.plan.get(fact), test.plan.get(short)):
-            if isinstance(told, str) and told[:1].isdigit():
-                try:
-                    yield parse_quantity(told).si
-                except UnitError:
-                    continue
+            value = _si(told) if isinstance(told, str) and told[:1].isdigit() else None
+            if value is not None:
+                yield value
+
+
+@lru_cache(maxsize=4096)
+def _si(text: str) -> float | None:
+    try:
+        return parse_quantity(text).si
+    except UnitError:
+        return None
 
 
 def _place(entry: RegulationEntry, fact: str, where: str) -> Place:
