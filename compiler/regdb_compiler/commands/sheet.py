@@ -54,7 +54,7 @@ class Sheet:
     def passage(self, text: str) -> None:
         """A text in its own lines, indented, long ones broken."""
         for line in text.strip("\n").split("\n"):
-            self._lines += ["    " + part for part in wrapped(line, WIDTH - 4)] or [""]
+            self._lines += [f"    {part}".rstrip() for part in wrapped(line, WIDTH - 4)]
 
     def render(self) -> str:
         """The sheet, ending in a line feed."""
