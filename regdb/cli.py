@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import difflib
 import importlib
+import io
 import os
 import sys
 from typing import Any, NamedTuple
@@ -11,7 +13,7 @@ import typer
 from typer.core import CompletionItem, TyperGroup  # type: ignore[attr-defined]  # typer re-exports the first without saying so
 from typer.exceptions import TyperException
 
-from regdb.front import FrontError
+from regdb.front import FrontError, told
 
 COMPLETING = "_REGDB_COMPLETE"
 """Set by the shell while it asks for completions; the name is the one typer makes of the program's."""
@@ -53,6 +55,16 @@ class LazyGroup(TyperGroup):
     def get_command(self, ctx: Any, cmd_name: str) -> Any:  # noqa: ARG002
         known = COMMANDS.get(cmd_name)
         return None if known is None else _load(cmd_name, known)
+
+    def resolve_command(self, ctx: Any, args: list[str]) -> Any:
+        """As typer resolves it, with the nearest name for one that is not there; typer knows no lazy names."""
+        try:
+            return super().resolve_command(ctx, args)
+        except TyperException as error:
+            near = difflib.get_close_matches(args[0], COMMANDS, 1) if args else []
+            if near and hasattr(error, "message"):
+                error.message = f"{error.message.rstrip('.')}; did you mean {near[0]}?"
+            raise
 
     def shell_complete(self, ctx: Any, incomplete: str) -> list[Any]:
         """Names from the table, without loading the commands that bear them."""
@@ -119,14 +131,16 @@ def main(arguments: list[str] | None = None) -> None:
         code = command.main(args=arguments, prog_name="regdb", standalone_mode=False)
     except TyperException as error:
         usage: Any = error  # every error typer raises can show itself; its base class does not say so
-        usage.show()
+        shown = io.StringIO()
+        usage.show(file=shown)
+        typer.echo(told(shown.getvalue()), err=True, nl=False)
         code = 2
     except (typer.Abort, KeyboardInterrupt):
         code = 130
     except typer.Exit as error:
         code = error.exit_code
     except FrontError as error:
-        typer.echo(f"error: {error}", err=True)
+        typer.echo(told(f"error: {error}"), err=True)
         code = 2
     except BrokenPipeError:
         code = 0

@@ -5,6 +5,8 @@ from __future__ import annotations
 import importlib
 import importlib.util
 import os
+import re
+import textwrap
 from collections.abc import Iterable
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -21,6 +23,24 @@ ADDED_CODES = "REGDB_ADDED_CODES"
 
 class FrontError(Exception):
     """Something a person can put right: a missing extra, a folder that is not there. The message says how."""
+
+
+WIDTH = 80
+"""Columns of everything that commands say."""
+
+
+def told(message: str) -> str:
+    """A message as people read it: lines of at most 80 columns, and paths from the working directory on where they lie in it."""
+    near = message.replace(f"{Path.cwd()}{os.sep}", "")
+    whole = _TYPED.sub(lambda found: found[0].replace(" ", "\0"), near)
+    broken = [textwrap.wrap(line, WIDTH, subsequent_indent="  ", **_WHOLE_WORDS) or [""] for line in whole.split("\n")]
+    return "\n".join(part for lines in broken for part in lines).replace("\0", " ")
+
+
+_TYPED = re.compile(r"`[^`\n]*`|pip install .*")
+"""What somebody may copy into a terminal, which stays on one line."""
+
+_WHOLE_WORDS: Any = {"break_long_words": False, "break_on_hyphens": False, "drop_whitespace": True}
 
 
 def shipped_codes() -> Path:

@@ -1,5 +1,6 @@
 """Jurisdictions as a tree: who makes law where, and which codes govern a place."""
 
+import difflib
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 
@@ -58,7 +59,9 @@ class JurisdictionTree:
         """The jurisdiction with this id or code. Raises JurisdictionError, listing the ones there are."""
         found = self._by_id.get(name) or self._by_code.get(name)
         if found is None:
-            raise JurisdictionError(f"unknown jurisdiction {name!r}; known: {', '.join(sorted(self._by_id))}")
+            near = difflib.get_close_matches(name, [*self._by_id, *self._by_code], 1)
+            hint = f"did you mean {near[0]}?" if near else f"known: {', '.join(sorted(self._by_id))}"
+            raise JurisdictionError(f"unknown jurisdiction {name!r}; {hint}")
         return found
 
     def path(self, name: str) -> tuple[Jurisdiction, ...]:

@@ -8,6 +8,10 @@ import pytest
 ROOT = Path(__file__).resolve().parents[1]
 
 
+def pytest_addoption(parser: pytest.Parser) -> None:
+    parser.addoption("--rewrite-golden", action="store_true", help="Write the transcripts of tests/golden as the commands answer now.")
+
+
 @pytest.fixture(scope="session")
 def root() -> Path:
     """The project's root folder."""

@@ -94,11 +94,18 @@ class Authority:
             return
         options = self.delegations(rule)
         if not options:
-            yield self._unknown(entry)
+            if not self._is_unread(entry):
+                yield self._unknown(entry)
             return
         attempts = [list(self._against(rule, item)) for item in options]
         if all(attempts):
             yield from min(attempts, key=len)
+
+    def _is_unread(self, entry: RegulationEntry) -> bool:
+        """Whether the authority stands in a section that could not be read, whose own problem is told already."""
+        citation = _citation(entry)
+        owner = next((item for item in self.corpus.tree if citation is not None and item.short == citation.code), None)
+        return citation is not None and owner is not None and self.corpus.leaves_out(f"{owner.code}-{citation.section}")
 
     def _unknown(self, entry: RegulationEntry) -> Diagnostic:
         place, text = entry.place("authority"), entry.doc.authority

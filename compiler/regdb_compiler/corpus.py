@@ -13,7 +13,7 @@ from regdb.states import StateMachine
 from regdb.vocabulary import Fact, Vocabulary
 from regdb_compiler import documents
 from regdb_compiler.diagnostics import Diagnostic, Place
-from regdb_compiler.entries import CaseEntry, RegulationEntry, SectionEntry, VersionEntry
+from regdb_compiler.entries import CaseEntry, OutlineEntry, RegulationEntry, SectionEntry, VersionEntry
 from regdb_compiler.parse import parse_document
 from regdb_compiler.read_vocabulary import jurisdictions_of, read_attributes, read_fact, read_jurisdictions, read_states
 from regdb_compiler.source import Mapping as MappingNode
@@ -28,10 +28,9 @@ CORPUS_RULES = (
 
 @dataclass(frozen=True)
 class Corpus:
-    """Everything that was read. `diagnostics` are the reading problems; sections that could not be read are left out.
-
-    `added` are the folders merged into the codes; names of files begin with the name of the folder that they stand in.
-    """
+    """Everything that was read. `diagnostics` are the reading problems; sections that could not be read are left out,
+    their ids (by the names of their files) are `unread`. `added` are the folders merged into the codes; names of files
+    begin with the name of the folder that they stand in."""
 
     root: Path
     files: Mapping[str, SourceFile]
@@ -42,7 +41,19 @@ class Corpus:
     cases: tuple[CaseEntry, ...]
     fact_places: Mapping[str, Place] = field(default_factory=dict)
     diagnostics: tuple[Diagnostic, ...] = ()
+    unread: frozenset[str] = frozenset()
     added: tuple[Path, ...] = ()
+
+    @property
+    def has_language(self) -> bool:
+        """Whether vocabulary, states and jurisdictions are sound; without them nothing else can be judged."""
+        parts = ("vocabulary/", "states.yaml", "jurisdictions.yaml")
+        inner = tuple(f"{folder.name}/{part}" for folder in (self.root, *self.added) for part in parts)
+        return not any(item.level == "error" and item.place.path.startswith(inner) for item in self.diagnostics)
+
+    def leaves_out(self, name: str) -> bool:
+        """Whether a regulation or section of this id may stand in a file that could not be read."""
+        return any(name == section or name.startswith(f"{section}-") for section in self.unread)
 
     @cached_property
     def versions(self) -> tuple[VersionEntry, ...]:
@@ -79,6 +90,7 @@ class _Reader:
         self.root, self.added, self.folders = root, added, (root, *added)
         self.files: dict[str, SourceFile] = {}
         self.problems: list[Diagnostic] = []
+        self.unread: set[str] = set()
 
     def read(self, path: Path) -> SourceFile:
         base = next(folder.parent for folder in self.folders if path.is_relative_to(folder))
@@ -105,10 +117,12 @@ def read_corpus(codes: Path, added: Sequence[Path] | None = None) -> Corpus:
     for folder, jurisdiction in _code_folders(reader, tree):
         sections += _read_sections(reader, folder, jurisdiction)
         cases += _read_cases(reader, folder, jurisdiction)
+        outlines += _read_outline(reader, folder, jurisdiction)
     sections = _without_duplicates(sections, reader.problems)
     return Corpus(
-        codes, reader.files, vocabulary, machine, tree, tuple(sections), tuple(cases), places, tuple(reader.problems), reader.added
-    )
+        codes, reader.files, vocabulary, machine, tree, tuple(sections), tuple(cases), places, tuple(reader.problems),
+        frozenset(reader.unread), reader.added,
+    )  # fmt: skip
 
 
 def _refuse_like_names(folders: Sequence[Path]) -> None:
@@ -121,7 +135,9 @@ def _refuse_like_names(folders: Sequence[Path]) -> None:
 
 
 def _code_folders(reader: _Reader, tree: JurisdictionTree) -> Iterator[tuple[Path, Jurisdiction]]:
-    """Every folder of sections with the jurisdiction whose code it is."""
+    """Every folder of sections with the jurisdiction whose code it is; none where there are no jurisdictions at all."""
+    if not tuple(tree):
+        return
     for root in reader.folders:
         for folder in sorted(path for path in root.iterdir() if path.is_dir()) if root.is_dir() else ():
             if folder.name in {"vocabulary", "interpretations", "schema"} or folder.name.startswith((".", "_")):
@@ -234,6 +250,8 @@ def _read_sections(reader: _Reader, folder: Path, jurisdiction: Jurisdiction) ->
         reader.problems += problems
         if doc is not None and isinstance(file.root, MappingNode):
             found.append(SectionEntry(doc, file.root, file, jurisdiction))
+        else:
+            reader.unread.add(f"{jurisdiction.code}-{path.stem}")
     return found
 
 
@@ -248,6 +266,16 @@ def _read_cases(reader: _Reader, folder: Path, jurisdiction: Jurisdiction) -> li
             pairs = zip(doc.cases, nodes.items, strict=True)
             found += [CaseEntry(item, node, file, jurisdiction) for item, node in pairs if isinstance(node, MappingNode)]
     return found
+
+
+def _read_outline(reader: _Reader, folder: Path, jurisdiction: Jurisdiction) -> list[OutlineEntry]:
+    path = folder / "outline.yaml"
+    if not path.is_file():
+        return []
+    file = reader.read(path)
+    doc, problems = parse_document(documents.Outline, file)
+    reader.problems += problems
+    return [OutlineEntry(doc, file.root, file, jurisdiction)] if doc is not None and isinstance(file.root, MappingNode) else []
 
 
 def _without_duplicates(sections: Iterable[SectionEntry], problems: list[Diagnostic]) -> list[SectionEntry]:

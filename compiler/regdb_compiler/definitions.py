@@ -5,13 +5,16 @@ from __future__ import annotations
 from collections.abc import Iterable
 from dataclasses import dataclass, field
 
-from regdb.condition import Node
+from regdb.condition import TRUE, Node
 from regdb.jurisdiction import Jurisdiction
 from regdb_compiler import documents
 from regdb_compiler.corpus import Corpus
 from regdb_compiler.diagnostics import Diagnostic
 from regdb_compiler.entries import VersionEntry
 from regdb_compiler.parse_condition import parse_condition
+
+MAX_DEPTH = 8
+"""Steps over which definitions may name each other, so that their trees stay within what every reader can walk."""
 
 DEFINITION_RULES = (
     ("R406", "definition-cycle", "Definitions that name each other in a circle mean nothing."),
@@ -40,6 +43,7 @@ class DefinitionTable:
     corpus: Corpus
     entries: dict[tuple[str, str], list[DefinitionEntry]] = field(default_factory=dict)
     problems: list[Diagnostic] = field(default_factory=list)
+    broken: set[str] = field(default_factory=set)
     _trees: dict[DefinitionEntry, Node | None] = field(default_factory=dict)
     _open: list[DefinitionEntry] = field(default_factory=list)
 
@@ -52,14 +56,26 @@ class DefinitionTable:
         return None
 
     def tree(self, name: str, jurisdiction: Jurisdiction, day: int) -> Node | None:
-        """What the name stands for, None when nothing of that name is in force."""
+        """What the name stands for, None when nothing of that name is in force.
+
+        A definition that cannot be read stands as `true`, so that only its own problem is told; its name is in `broken`.
+        """
         entry = self.find(name, jurisdiction, day)
-        return None if entry is None else self._tree_of(entry, day)
+        if entry is None:
+            return None
+        found = self._tree_of(entry, day)
+        if found is None:
+            self.broken.add(name)
+        return found or TRUE
 
     def _tree_of(self, entry: DefinitionEntry, day: int) -> Node | None:
         if entry in self._trees:
             return self._trees[entry]
         place = entry.version.place("definitions", entry.position, "name")
+        if len(self._open) >= MAX_DEPTH:
+            message = f"definitions name each other over more than {MAX_DEPTH} steps"
+            self.problems.append(Diagnostic("R406", "definition-cycle", "error", message, place))
+            return None
         if entry in self._open:
             circle = " -> ".join([*(item.doc.name for item in self._open[self._open.index(entry) :]), entry.doc.name])
             self.problems.append(Diagnostic("R406", "definition-cycle", "error", f"definitions form a circle: {circle}", place))
@@ -68,11 +84,12 @@ class DefinitionTable:
         owner = entry.version.section.jurisdiction
         parsed = parse_condition(entry.doc.when, self.corpus.vocabulary, lambda name: self.tree(name, owner, day))
         self._open.pop()
-        self._trees[entry] = parsed.node
+        broken = any(name in self.broken for name in parsed.uses)
+        self._trees[entry] = None if broken else parsed.node
         for problem in parsed.problems:
             where = entry.version.text_place(problem.start, problem.end, "definitions", entry.position, "when")
             self.problems.append(Diagnostic(problem.code, problem.name, "error", problem.message, where, note=problem.note))
-        return parsed.node
+        return self._trees[entry]
 
     def changes(self, names: Iterable[str], jurisdiction: Jurisdiction, start: int, until: int | None) -> int | None:
         """The first day after `start` (before `until`) on which one of the names changes its meaning."""

@@ -56,5 +56,7 @@ def _build(codes: Path, added: Sequence[Path] | None) -> Build:
     targets = find_targets(corpus)
     authority = Authority(resolution, targets)
     tests = read_tests(corpus)
-    found = (*corpus.diagnostics, *resolution.diagnostics, *targets.problems, *check_timeline(corpus), *authority.check(), *check_tests(tests))
+    found = corpus.diagnostics
+    if corpus.has_language:  # else all that follows would only tell of the words that are missing
+        found = (*found, *resolution.diagnostics, *targets.problems, *check_timeline(corpus), *authority.check(), *check_tests(tests))
     return Build(corpus, resolution, targets, authority, in_order(found), tests)

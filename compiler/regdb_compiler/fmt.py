@@ -49,7 +49,8 @@ def format_text(text: str, model: type[BaseModel]) -> Formatted:
     """The canonical text of a file of one kind. A file that cannot be read, or would change, is returned as it is."""
     before = parse_text(text, "file")
     if before.root is None or before.diagnostics:
-        return Formatted(text, "it cannot be read")
+        first = before.diagnostics[0] if before.diagnostics else None
+        return Formatted(text, f"line {first.place.line}: {first.message}" if first else "it cannot be read")
     try:
         written = _rewrite(text, model)
         again = _rewrite(written, model)
@@ -172,7 +173,8 @@ FORMS: tuple[tuple[Callable[[tuple[str, ...]], bool], type[BaseModel]], ...] = (
     (lambda parts: parts == ("states.yaml",), documents.StatesFile),
     (lambda parts: len(parts) == 2 and parts[0] == "vocabulary", documents.VocabularyFile),
     (lambda parts: len(parts) == 3 and parts[1] == "cases", documents.Cases),
-    (lambda parts: len(parts) == 2 and parts[1] != "outline.yaml", documents.Section),
+    (lambda parts: len(parts) == 2 and parts[1] == "outline.yaml", documents.Outline),
+    (lambda parts: len(parts) == 2, documents.Section),
 )
 """Which kind of document stands where in a codes folder."""
 

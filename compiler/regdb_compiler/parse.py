@@ -61,12 +61,26 @@ def parse_document(model: type[D], file: SourceFile) -> tuple[D | None, list[Dia
 
 def _diagnose(model: type[BaseModel], root: Node, error: ValidationError) -> Iterator[Diagnostic]:
     seen: set[tuple[Place, str]] = set()
-    for item in error.errors(include_url=False):
+    items = error.errors(include_url=False)
+    for item in items:
         path = _yaml_path(root, item["loc"])
+        if _is_consequence(item, path, items):
+            continue
         found = _one(model, root, path, item)
         if (found.place, found.code) not in seen:
             seen.add((found.place, found.code))
             yield found
+
+
+def _is_consequence(item: Any, path: Path, items: list[Any]) -> bool:
+    """A list found too short only because its items are wrong, or a key missing only because it is misspelled."""
+    loc = item["loc"]
+    if item["type"] == "too_short":
+        return any(len(other["loc"]) > len(loc) and other["loc"][: len(loc)] == loc for other in items)
+    if item["type"] != "missing":
+        return False
+    beside = [str(other["loc"][-1]) for other in items if other["type"] == "extra_forbidden" and other["loc"][:-1] == loc[:-1]]
+    return any(difflib.get_close_matches(key, [str(path[-1])], 1, 0.7) for key in beside)
 
 
 def _yaml_path(root: Node, loc: tuple[str | int, ...]) -> Path:
@@ -115,6 +129,8 @@ def _plain(item: Any) -> str:
         got = "nothing" if item["input"] is None else "a list" if isinstance(item["input"], list) else (
             "keys with values" if isinstance(item["input"], dict) else "text")  # fmt: skip
         return f"expected {wants[kind]}, found {got}"
+    if kind in {"less_than_equal", "greater_than_equal"}:
+        return f"at most {context['le']}" if "le" in context else f"at least {context['ge']}"
     if kind == "string_pattern_mismatch":
         return f"{item['input']!r} does not have the form {context['pattern']}"
     return str(item["msg"][:1].lower() + item["msg"][1:])

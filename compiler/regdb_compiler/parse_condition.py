@@ -29,9 +29,12 @@ CONDITION_RULES = (
 _FRIENDLY = {
     "NAME": "a fact", "OPERATOR": "a comparison (==, !=, <, <=, >, >=)", "QUANTITY": "a quantity with its unit", "NUMBER": "a number",
     "TIME": "a time (07:00)", "DATE": "a date (2026-03-02)", "SIGN": "+ or -", "LPAR": "(", "RPAR": ")", "LBRACE": "{", "RBRACE": "}",
-    "COMMA": ",", "STAR": "*", "AND": "and", "OR": "or", "NOT": "not", "IN": "in", "WITHIN": "within", "KNOWN": "known(",
+    "COMMA": ",", "STAR": "*", "AND": "`and`", "OR": "`or`", "NOT": "`not`", "IN": "`in`", "WITHIN": "`within`", "KNOWN": "known(",
     "__ANON_0": "..", "$END": "the end",
 }  # fmt: skip
+MAX_DEPTH = 30
+"""How deep `not`, `and` and `or` may stand inside each other: far beyond law, and well within what every reader can walk."""
+
 _MISTAKES: tuple[tuple[re.Pattern[str], str], ...] = (
     (re.compile(r"="), "write == to compare"),
     (re.compile(r"&&?"), "write `and`"),
@@ -69,11 +72,27 @@ def parse_condition(text: str, vocabulary: Vocabulary, definition: Callable[[str
 def read_raw(text: str) -> Raw | Problem:
     """The condition before types: words with their offsets, or the one reason why it cannot be read."""
     try:
-        return _parser().parse(text, start="start")  # type: ignore[return-value]  # the transformer returns Raw
+        raw: Raw = _parser().parse(text, start="start")  # type: ignore[assignment]  # the transformer returns Raw
     except UnexpectedInput as error:
         return _syntax_problem(text, error)
-    except RecursionError:
-        return Problem("R017", "condition-syntax", "the condition is nested too deeply", 0, len(text), "name parts of it as definitions")
+    if _is_deep(raw):
+        message = f"the condition is nested deeper than {MAX_DEPTH} levels"
+        return Problem("R017", "condition-syntax", message, 0, min(len(text), 40), "name parts of it as definitions")
+    return raw
+
+
+def _is_deep(raw: Raw) -> bool:
+    """Whether the condition is deeper than `MAX_DEPTH`, found level by level as recursion could not."""
+    level: list[Raw] = [raw]
+    for _ in range(MAX_DEPTH):
+        level = [part for item in level for part in _inner(item)]
+        if not level:
+            return False
+    return True
+
+
+def _inner(raw: Raw) -> tuple[Raw, ...]:
+    return raw.parts if isinstance(raw, RawJoin) else (raw.part,) if isinstance(raw, RawNot) else ()
 
 
 def read_linear(text: str) -> tuple[RawTerm, ...] | Problem:
@@ -179,4 +198,4 @@ def _unit_problem(text: str, at: int) -> Problem | None:
 def _expected(error: UnexpectedInput) -> str:
     names = getattr(error, "accepts", None) or getattr(error, "allowed", None) or getattr(error, "expected", None) or ()
     words = sorted({_FRIENDLY.get(str(name), str(name).lower()) for name in names} - {"+ or -", "*"})
-    return " or ".join(words) if words else "nothing more"
+    return ", ".join(words[:-1]) + " or " + words[-1] if len(words) > 1 else "".join(words) or "nothing more"

@@ -67,12 +67,19 @@ class _Index:
         if group in {"tag", "topic"} and word:
             table = self.by_tag if group == "tag" else self.by_topic
             found = sorted({other.id for other in table.get(word, ()) if other.id != entry.id and self._reaches(entry, other, kind)})
-            return (found, None) if found else ([], self._unknown(entry, kind, name, position, sorted(table)))
+            silent = bool(found or self.corpus.unread)
+            return (found, None) if silent else ([], self._unknown(entry, kind, name, position, sorted(table)))
         full = next((i for i in (f"{entry.section.id}-{name}", f"{entry.jurisdiction.code}-{name}", name) if i in self.corpus.by_id), None)
+        if full is None and self._is_unread(entry, name):
+            return [], None
         if full is None:
             return [], self._unknown(entry, kind, name, position, sorted(self.corpus.by_id))
         problem = self._side(entry, self.corpus.by_id[full][0], kind, position)
         return ([], problem) if problem else ([full], None)
+
+    def _is_unread(self, entry: RegulationEntry, name: str) -> bool:
+        """Whether the name may be one of a section that could not be read, whose own problem is told already."""
+        return self.corpus.leaves_out(name) or self.corpus.leaves_out(f"{entry.jurisdiction.code}-{name}")
 
     def _reaches(self, entry: RegulationEntry, other: RegulationEntry, kind: str) -> bool:
         """A group exception displaces its own jurisdiction's rules and those below (a model's only its own); a group override those above."""

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import difflib
 from collections.abc import Iterable, Iterator
+from dataclasses import replace
 from typing import Any
 
 from regdb.jurisdiction import Jurisdiction, JurisdictionError, JurisdictionTree
@@ -49,7 +51,7 @@ def read_fact(name: str, doc: documents.Fact, file: SourceFile) -> tuple[Fact | 
 
 def _shape_problem(doc: documents.Fact) -> str:
     if (doc.type in {"enumeration", "set"}) != bool(doc.values):
-        return f"a {doc.type} {'needs' if not doc.values else 'has no'} values"
+        return f"{'an' if doc.type == 'enumeration' else 'a'} {doc.type} {'needs' if not doc.values else 'has no'} values"
     if len(set(doc.values)) != len(doc.values):
         return "a value is listed twice"
     if doc.type == "quantity":
@@ -92,10 +94,19 @@ def read_attributes(
 
 def read_jurisdictions(doc: documents.JurisdictionsFile, file: SourceFile) -> tuple[JurisdictionTree | None, list[Diagnostic]]:
     """The tree, or why it is none."""
+    orphans = [_orphan(name, item.parent, doc, file) for name, item in doc.jurisdictions.items() if item.parent not in (None, *doc.jurisdictions)]
+    if orphans:
+        return None, orphans
     try:
         return JurisdictionTree(jurisdictions_of(doc)), []
     except JurisdictionError as error:
         return None, [_bad(file, "R110", "bad-jurisdiction", str(error), ("jurisdictions",))]
+
+
+def _orphan(name: str, parent: str | None, doc: documents.JurisdictionsFile, file: SourceFile) -> Diagnostic:
+    near = difflib.get_close_matches(str(parent), doc.jurisdictions, 1)
+    found = _bad(file, "R110", "bad-jurisdiction", f"`{name}` names a parent that is not declared", ("jurisdictions", name, "parent"))
+    return replace(found, note=f"did you mean {near[0]}?" if near else f"declared: {', '.join(doc.jurisdictions)}")
 
 
 def jurisdictions_of(doc: documents.JurisdictionsFile) -> list[Jurisdiction]:
@@ -155,7 +166,7 @@ def _state_problems(doc: documents.StatesFile, file: SourceFile) -> Iterator[Dia
         for short, state in item.states.items():
             for target in state.next:
                 if target not in item.states:
-                    yield bad(f"`{name}.{short}` leads to `{target}`, which is no state of `{name}`", "super_states", name, "states", short)
+                    yield bad(f"`{name}.{short}` leads to `{target}`, which is no state of `{name}`", "super_states", name, "states", short, "next")
             if short not in reached:
                 yield bad(f"`{name}.{short}` cannot be reached", "super_states", name, "states", short)
 

@@ -122,6 +122,7 @@ def _resolve_entry(reading: _Reading, definitions: DefinitionTable) -> Iterator[
         if changes is not None:
             starts.append(changes)
         sound = when.node is not None and (unless is None or unless.node is not None) and not reading.problems
+        sound = sound and not any(name in definitions.broken for name in uses)
         yield Resolved(
             entry, start, until, when.node or TRUE, unless.node if unless else None, scope, limits, current, following, uses, sound
         )

@@ -74,7 +74,7 @@ def parse_text(text: str, path: str) -> SourceFile:
     with collector_paused():
         tree, problems, whole = _read(lines)
     if not problems and (tree is None or (isinstance(tree, Scalar) and tree.plain and not tree.text)):
-        return _unread(path, "R003", "the file is empty", text, "write the section, or delete the file")
+        return _unread(path, "R003", "the file is empty", text, "write what belongs in it, or delete the file")
     comments = read_suppressions(lines, tree)
     return SourceFile(path, text, tree if whole else None, comments, in_order(problems))
 

@@ -31,6 +31,7 @@ TOLD: tuple[tuple[str, str, str], ...] = (
     ("directive", "`%` at the beginning of a line is a YAML directive, and none is used here",
      "remove the line, or indent or quote the text"),
     ("incompatible YAML document", "this asks for another version of YAML", "remove the `%YAML` line"),
+    ("tab character that violates indentation", "this line is indented with a tab", "indent with spaces"),
     ("tab character where an indentation space", "this line is indented with a tab", "indent with spaces"),
     ("anchor", "`&` begins an anchor, and anchors are not used here", "put the value in quotes"),
     ("alias", "`*` begins an alias, and aliases are not used here", "put the value in quotes"),

@@ -22,7 +22,7 @@ from regdb_compiler.source_errors import syntax_error
 from regdb_compiler.tree import Lines, Mapping, Node, Scalar, Sequence
 
 MAX_DEPTH = 60
-MAX_PROBLEMS = 50
+MAX_PROBLEMS = 20
 NOT_TEXT = re.compile("[\x00-\x08\x0b\x0c\x0e-\x1f\x7f-\x84\x86-\x9f\ud800-\udfff\ufffe\uffff]")
 ADVICE = {
     "R006": "write the value out where it is needed; if the `&` or `*` is text, put it in quotes",

@@ -155,6 +155,9 @@ class Typer:
         fact = self.vocabulary.facts.get(lone.text) if lone else None
         if lone is not None and fact is not None and fact.kind in {"boolean", "enumeration", "set"}:
             return self._equals(op, lone, fact, other, right)
+        if lone is not None and fact is None and other is not None and other.text not in self.vocabulary:
+            self._fact(lone)  # what it is compared with may be a word of it: only the fact is wrong for certain
+            return TRUE
         a, b = self._side(left), self._side(right)
         if a is None or b is None:
             return TRUE

@@ -62,7 +62,7 @@ def test_scalars_stay_as_typed(scalar: str) -> None:
 def test_what_cannot_be_read_is_left_alone() -> None:
     result = format_text("a: [1,\n", documents.Section)
     assert result.text == "a: [1,\n"
-    assert result.problem == "it cannot be read"
+    assert result.problem == "line 1: no value can begin with this character"
 
 
 def shuffled(text: str, seed: int) -> str:

@@ -30,13 +30,15 @@ QUOTE = Diagnostic(
     fix=Fix("safe", "quote the nearest passage", (Edit(Place(PATH, 17, 16, 17, 32), "less than three feet"),)),
 )
 FRAME = """\
-error[R204] quote-not-in-text: these words are not in the attached text of this version
+error[R204] quote-not-in-text: these words are not in the attached text of this
+    version
   --> codes/cvc/21760.yaml:17:16
    |
 17 |         quote: less than 3 feet
    |                ^^^^^^^^^^^^^^^^ nearest passage: "less than three feet"
    |
-   = help: quote the law word for word; the number belongs in `attributes`   [fix: safe]
+   = help: quote the law word for word; the number belongs in `attributes`
+           [fix: safe]
    = law:  Cal. Veh. Code § 21760(c), in force since 2014-09-16
 
 1 error in 1 file (1 fixable with --fix)

@@ -1,11 +1,13 @@
 """`regdb diff`: compare two dates, two jurisdictions, two folders or two databases."""
 
 import datetime
+import re
 from pathlib import Path
 from typing import Annotated
 
 import typer
 
+from regdb import completion
 from regdb.front import FrontError, database
 from regdb_compiler.diff.compare import DATE_FIELDS, Change, compare, compare_by_topic
 from regdb_compiler.diff.report import to_json, to_text
@@ -13,10 +15,10 @@ from regdb_compiler.diff.sides import Item, jurisdiction_paths, read_items
 
 
 def command(
-    old: Annotated[str, typer.Argument(help="A date, a jurisdiction, a folder of codes or a database.")],
-    new: Annotated[str, typer.Argument(help="The other one, of the same kind.")],
+    old: Annotated[str, typer.Argument(help="A date, a jurisdiction, a folder of codes or a database.", autocompletion=completion.jurisdictions)],
+    new: Annotated[str, typer.Argument(help="The other one, of the same kind.", autocompletion=completion.jurisdictions)],
     codes: Annotated[Path | None, typer.Option(help="Folder of codes (for dates and jurisdictions).")] = None,
-    in_: Annotated[str | None, typer.Option("--in", help="Only law that governs this jurisdiction.")] = None,
+    in_: Annotated[str | None, typer.Option("--in", help="Only law that governs this jurisdiction.", autocompletion=completion.jurisdictions)] = None,
     on: Annotated[str | None, typer.Option("--on", help="The day, for jurisdictions; default: today.")] = None,
     format_: Annotated[str, typer.Option("--format", help="text or json.")] = "text",
 ) -> None:
@@ -28,6 +30,7 @@ def command(
 
 
 def _compare(old: str, new: str, codes: Path | None, in_: str | None, on: str | None) -> tuple[tuple[str, str], tuple[Change, ...]]:
+    _refuse_bad_dates(old, new, *([on] if on else []))
     if _is_date(old) and _is_date(new):
         path = database(codes)
         where = _path_of(path, in_) if in_ else None
@@ -36,6 +39,8 @@ def _compare(old: str, new: str, codes: Path | None, in_: str | None, on: str | 
         return (old, new + place), compare(*sides, without=DATE_FIELDS)
     if Path(old).exists() and Path(new).exists():
         return (old, new), compare(_items_at(Path(old), in_, on), _items_at(Path(new), in_, on))
+    if _is_date(old) or _is_date(new):
+        raise FrontError(f"{old} and {new} are not of one kind: compare two dates, two jurisdictions, two folders or two databases")
     path = database(codes)
     paths = jurisdiction_paths(path)
     for name in (old, new):
@@ -63,6 +68,13 @@ def _path_of(path: Path, name: str) -> frozenset[str]:
 def _items_at(path: Path, in_: str | None, on: str | None) -> tuple[Item, ...]:
     found = database(path) if path.is_dir() else path
     return read_items(found, on=on, jurisdictions=_path_of(found, in_) if in_ else None)
+
+
+def _refuse_bad_dates(*texts: str) -> None:
+    """Text in the form of a date that is none, such as 2026-02-30. Raises FrontError."""
+    for text in texts:
+        if re.fullmatch(r"\d+-\d+-\d+", text) and not _is_date(text) and not Path(text).exists():
+            raise FrontError(f"{text!r} is no date; write it as 2026-03-02")
 
 
 def _is_date(text: str) -> bool:

@@ -8,7 +8,7 @@ from typing import Annotated
 import typer
 from pydantic import BaseModel
 
-from regdb.front import FrontError, codes_folder
+from regdb.front import FrontError, codes_folder, told
 from regdb_compiler.fixes import write_beside
 from regdb_compiler.fmt import format_text, model_of
 
@@ -25,17 +25,20 @@ def command(
         name = str(path.relative_to(root.parent))
         try:
             text = path.read_text("utf-8")
-        except (OSError, UnicodeDecodeError) as error:
-            raise FrontError(f"{name} cannot be read: {error}") from error
+        except OSError as error:
+            raise FrontError(f"{name} cannot be read: {error.strerror}") from error
+        except UnicodeDecodeError:
+            raise FrontError(f"{name} is not UTF-8 text") from None
         result = format_text(text, model)
         if result.problem:
             left += 1
-            typer.echo(f"{name}: left as it is: {result.problem}", err=True)
+            typer.echo(told(f"{name}: left as it is: {result.problem}"), err=True)
         elif result.text != text:
             changed += 1
             _act(path, name, text, result.text, write=not (check or diff), show=diff)
     word = "would change" if check or diff else "changed"
-    typer.echo(f"{changed} files {word}" + (f", {left} left as they are" if left else ""), err=diff)
+    files = f"{changed} {'file' if changed == 1 else 'files'}"
+    typer.echo(f"{files} {word}" + (f", {left} left as {'it is' if left == 1 else 'they are'}" if left else ""), err=diff)
     raise typer.Exit(2 if left else 1 if changed and (check or diff) else 0)
 
 

@@ -37,8 +37,10 @@ def render(diagnostics: Sequence[Diagnostic], sources: Mapping[str, str], *, col
 
 def _finding(d: Diagnostic, lines: Mapping[str, list[str]], style: Style) -> Iterator[str]:
     digits = max(len(str(place.end_line)) for place in (d.place, *(place for place, _ in d.related)))
-    head = style.paint(f"{d.level}[{d.code}]", BOLD, COLORS[d.level])
-    yield f"{head} {d.name}: {visible(' '.join(d.message.split()))}"
+    head = f"{d.level}[{d.code}]"
+    first, *more = _wrapped(f"{head} {d.name}: {visible(' '.join(d.message.split()))}", style.width, "    ")
+    yield style.paint(head, BOLD, COLORS[d.level]) + first.removeprefix(head)
+    yield from more
     yield from _frame(d.place, d.note, "^", COLORS[d.level], digits, lines, style)
     for place, note in d.related:
         yield from _frame(place, note, "-", BLUE, digits, lines, style)
@@ -48,9 +50,23 @@ def _finding(d: Diagnostic, lines: Mapping[str, list[str]], style: Style) -> Ite
     equals = " " * (digits + 1) + style.paint("=", BLUE)
     fix = f"   [fix: {d.fix.kind}]" if d.fix else ""
     if d.help or d.fix:
-        yield f"{equals} help: {visible(d.help or (d.fix.title if d.fix else ''))}{fix}"
+        yield from _told(equals, f"help: {visible(d.help or (d.fix.title if d.fix else ''))}{fix}", digits, style)
     if d.law:
-        yield f"{equals} law:  {visible(d.law)}"
+        yield from _told(equals, f"law:  {visible(d.law)}", digits, style)
+
+
+def _told(equals: str, text: str, digits: int, style: Style) -> Iterator[str]:
+    """A line under the frame, broken under its own words."""
+    first, *more = _wrapped(text, style.width - digits - 3, " " * len("help: "))
+    yield f"{equals} {first}"
+    yield from (f"{' ' * (digits + 3)}{line}" for line in more)
+
+
+def _wrapped(text: str, width: int, indent: str) -> list[str]:
+    """Lines of at most `width` columns, the later ones indented; spaces inside them stay as they are."""
+    if total_width(text) <= width:
+        return [text]
+    return textwrap.wrap(text, width, subsequent_indent=indent, break_on_hyphens=False, drop_whitespace=True)
 
 
 def _frame(place: Place, note: str, mark: str, color: str, digits: int, lines: Mapping[str, list[str]], style: Style) -> Iterator[str]:

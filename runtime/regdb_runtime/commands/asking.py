@@ -8,11 +8,12 @@ from pathlib import Path
 
 import typer
 
+from regdb.front import told
 from regdb.situation import Plan, Scene, SceneError, read_plan, read_scene
 from regdb_runtime.commands.scene_file import Question, add_facts, read_question
 from regdb_runtime.database import RegulationDatabase
 from regdb_runtime.errors import RegdbRuntimeError, RequestError
-from regdb_runtime.legality import View
+from regdb_runtime.legality import View, day_number
 from regdb_runtime.verdict import Verdict
 
 FORMATS = ("text", "json")
@@ -61,8 +62,11 @@ def _read(
     view, scene, plan = None, None, None
     if not any(question.plan.get(key) for key in ("current", "next")):
         problems.append("no transition: give --current and --next, or `plan:` with current and next in the scene file")
+    wrong = _wrong_day(day)
+    problems += wrong
     try:
-        view = database.at(place or question.place or _only_state(database), day)
+        where = place or question.place or _only_state(database)
+        view = database.at(where, datetime.date.today() if wrong else day)
     except RequestError as error:
         problems.append(str(error))
     try:
@@ -74,6 +78,15 @@ def _read(
     except SceneError as error:
         problems += error.problems
     return view, None if scene is None or plan is None else (scene, plan)
+
+
+def _wrong_day(day: str) -> list[str]:
+    """Why the day is none; told beside what is wrong with the place, so it is asked for apart."""
+    try:
+        day_number(day)
+    except RequestError as error:
+        return [str(error)]
+    return []
 
 
 def _only_state(database: RegulationDatabase) -> str:
@@ -93,5 +106,5 @@ def _compiled(codes: Path | None) -> Path:
 
 def _refused(problems: list[str]) -> typer.Exit:
     for problem in problems:
-        typer.echo(f"error: {problem}", err=True)
+        typer.echo(told(f"error: {problem}"), err=True)
     return typer.Exit(2)
