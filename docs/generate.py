@@ -14,10 +14,11 @@ from collections.abc import Callable, Iterator
 from functools import cache
 from pathlib import Path
 
+from regdb_compiler.driver import Build, build
+
 from regdb import schema
 from regdb.cli import COMMANDS
 from regdb.vocabulary import Fact
-from regdb_compiler.driver import Build, build
 
 ROOT = Path(__file__).resolve().parents[1]
 PAGES = ROOT / "docs" / "reference"
@@ -67,7 +68,10 @@ def vocabulary() -> str:
 def _fact_row(fact: Fact) -> tuple[object, ...]:
     kind = fact.kind + (f": {', '.join(fact.values)}" if fact.values else f" ({fact.unit})" if fact.unit else "")
     held = fact.assumption
-    unknown = "strict" if held is None else f"assume {fact.show(held.value)}" + (f" within {held.within}" if held.within else "") + f": {held.because}"
+    unknown = "strict"
+    if held is not None:
+        within = f" within {held.within}" if held.within else ""
+        unknown = f"assume {fact.show(held.value)}{within}: {held.because}"
     return f"`{fact.name}`", kind, fact.source, unknown, fact.meaning
 
 
@@ -89,7 +93,8 @@ def database() -> str:
     """Tables, indexes and views as they stand in the schema."""
     parts = [
         "# The database\n",
-        f'One SQLite file. `application_id` is 0x{schema.APPLICATION_ID:08X} ("RGDB"), `user_version` {schema.USER_VERSION} (schema {schema.MAJOR}.{schema.MINOR}).',
+        f'One SQLite file. `application_id` is 0x{schema.APPLICATION_ID:08X} ("RGDB"), `user_version` {schema.USER_VERSION}',
+        f"(schema {schema.MAJOR}.{schema.MINOR}).",
         "A reader refuses another major version. JSON stands in text columns, dates are ISO text, NULL where open.\n",
     ]
     for name, columns in schema.TABLES.items():

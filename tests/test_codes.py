@@ -3,8 +3,9 @@
 from pathlib import Path
 
 import pytest
-from regdb.condition import literals
 from regdb_compiler.driver import Build, build
+
+from regdb.condition import literals
 
 CVC = (
     *map(str, range(21450, 21458)), "21460", "21460.5", *map(str, range(21650, 21653)), *map(str, range(21654, 21659)), "21703",
@@ -72,7 +73,7 @@ def test_table_one_s_row_is_a_penalty_tier_over_all_states_of_overtaking(law: Bu
     (row,) = [rule for rule in law.regulations if rule.id.startswith("cvc-22348-b") and rule.force == "penalty_tier" and rule.until is None]
     assert [limit.text for limit in row.limits] == ["100 mph"]
     assert row.current is not None
-    assert {name for name in law.corpus.machine.expand("overtaking")} <= row.current
+    assert set(law.corpus.machine.expand("overtaking")) <= row.current
 
 
 def test_the_school_zone_rule_s_vagueness_is_one(law: Build) -> None:

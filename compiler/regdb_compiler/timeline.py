@@ -37,7 +37,8 @@ def _versions(section: SectionEntry) -> Iterator[Diagnostic]:
     for earlier, later in zip(section.versions, section.versions[1:], strict=False):
         place, related = later.place("effective"), ((_end_place(earlier), "the version before"),)
         if later.effective < earlier.effective:
-            yield Diagnostic("R506", "versions-out-of-order", "error", "this version is older than the one before it", place, related=related, law=law)
+            message = "this version is older than the one before it"
+            yield Diagnostic("R506", "versions-out-of-order", "error", message, place, related=related, law=law)
         elif earlier.until is None or later.effective < earlier.until:
             end = "never ends" if earlier.until is None else f"ends on {_iso(earlier.until)}"
             message = f"this version begins while the one before is in force (it {end})"

@@ -11,10 +11,18 @@ from regdb_compiler.diff.compare import Change, compare, compare_by_topic, liken
 from regdb_compiler.diff.report import summary, to_json, to_text
 from regdb_compiler.diff.sides import Item
 
+Limits = dict[str, tuple[str, float]]
 
-def item(name: str = "cvc-1-a", *, permission: bool = False, topic: str = "t", limits: dict[str, tuple[str, float]] | None = None, **fields: str) -> Item:
+
+def item(name: str = "cvc-1-a", *, permission: bool = False, topic: str = "t", limits: Limits | None = None, **fields: str) -> Item:
     told = {"legality": "permitted" if permission else "forbidden", **fields}
     return Item(name, "CVC 1(a)", topic, "california", permission, told, limits or {})
+
+
+FAST = item(max_speed="30 mph", limits={"max_speed": ("max", 13.4)})
+SLOW = item(max_speed="25 mph", limits={"max_speed": ("max", 11.2)})
+NARROW = item(min_clearance="3 ft", limits={"min_clearance": ("min", 0.9)})
+WIDE = item(min_clearance="4 ft", limits={"min_clearance": ("min", 1.2)})
 
 
 def test_equal_sides_have_no_difference() -> None:
@@ -25,9 +33,9 @@ def test_equal_sides_have_no_difference() -> None:
 @pytest.mark.parametrize(
     ("old", "new", "impact"),
     [
-        (item(max_speed="30 mph", limits={"max_speed": ("max", 13.4)}), item(max_speed="25 mph", limits={"max_speed": ("max", 11.2)}), "TIGHTER"),
-        (item(max_speed="25 mph", limits={"max_speed": ("max", 11.2)}), item(max_speed="30 mph", limits={"max_speed": ("max", 13.4)}), "LOOSER"),
-        (item(min_clearance="3 ft", limits={"min_clearance": ("min", 0.9)}), item(min_clearance="4 ft", limits={"min_clearance": ("min", 1.2)}), "TIGHTER"),
+        (FAST, SLOW, "TIGHTER"),
+        (SLOW, FAST, "LOOSER"),
+        (NARROW, WIDE, "TIGHTER"),
         (item(when="a"), item(when="b"), "DIFFERENT"),
         (item(result="x"), item(result="y"), "TEXT-ONLY"),
         (item(until="2030-01-01"), item(), "DATES-ONLY"),
@@ -39,7 +47,10 @@ def test_impact_of_a_changed_field(old: Item, new: Item, impact: str) -> None:
     assert change.impact == impact
 
 
-@pytest.mark.parametrize(("permission", "added", "impact"), [(False, True, "TIGHTER"), (False, False, "LOOSER"), (True, True, "LOOSER"), (True, False, "TIGHTER")])
+@pytest.mark.parametrize(
+    ("permission", "added", "impact"),
+    [(False, True, "TIGHTER"), (False, False, "LOOSER"), (True, True, "LOOSER"), (True, False, "TIGHTER")],
+)
 def test_impact_of_what_comes_and_goes(permission: bool, added: bool, impact: str) -> None:
     one = item(permission=permission)
     (change,) = compare([] if added else [one], [one] if added else [])

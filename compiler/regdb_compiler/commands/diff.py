@@ -35,8 +35,8 @@ def _compare(old: str, new: str, codes: Path | None, in_: str | None, on: str | 
         path = database(codes)
         where = _path_of(path, in_) if in_ else None
         place = f" in {in_}" if in_ else ""
-        sides = [read_items(path, on=day, jurisdictions=where) for day in (old, new)]
-        return (old, new + place), compare(*sides, without=DATE_FIELDS)
+        before, after = (read_items(path, on=day, jurisdictions=where) for day in (old, new))
+        return (old, new + place), compare(before, after, DATE_FIELDS)
     if Path(old).exists() and Path(new).exists():
         return (old, new), compare(_items_at(Path(old), in_, on), _items_at(Path(new), in_, on))
     if _is_date(old) or _is_date(new):

@@ -1,7 +1,7 @@
-"""`force` stands in a regulation that has no limit.
+"""`force` stands in a regulation that has no limit, and is not the basic speed law.
 
 Why:
-    The kinds are kinds of limit. Without one they say nothing, save `advisory`, which silently makes the prohibition unbreakable.
+    The kinds are kinds of limit. Without one they say nothing, save `advisory`, which silently makes the prohibition unbreakable, and `basic`: the basic speed law bounds speed without a number.
 
 Fails:
     force: absolute
@@ -31,7 +31,7 @@ def check(build: Build) -> Iterator[Diagnostic]:
     """One finding for each such regulation."""
     for rule in view_of(build).first:
         entry = rule.entry
-        if entry.doc.force is not None and not rule.limits:
+        if entry.doc.force not in {None, "basic"} and not rule.limits:
             advisory = entry.doc.force == "advisory"
             edit = None if advisory else delete_key(entry.node, "force")
             fix = Fix("safe", "take `force` out", (edit,)) if edit else None
