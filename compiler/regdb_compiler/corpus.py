@@ -114,6 +114,7 @@ def read_corpus(codes: Path, added: Sequence[Path] | None = None) -> Corpus:
     vocabulary, places = _read_vocabulary(reader)
     sections: list[SectionEntry] = []
     cases: list[CaseEntry] = []
+    outlines: list[OutlineEntry] = []
     for folder, jurisdiction in _code_folders(reader, tree):
         sections += _read_sections(reader, folder, jurisdiction)
         cases += _read_cases(reader, folder, jurisdiction)
@@ -121,7 +122,7 @@ def read_corpus(codes: Path, added: Sequence[Path] | None = None) -> Corpus:
     sections = _without_duplicates(sections, reader.problems)
     return Corpus(
         codes, reader.files, vocabulary, machine, tree, tuple(sections), tuple(cases), places, tuple(reader.problems),
-        frozenset(reader.unread), reader.added,
+        frozenset(reader.unread), reader.added, tuple(outlines),
     )  # fmt: skip
 
 

@@ -8,7 +8,7 @@ from __future__ import annotations
 import datetime
 from typing import Annotated, Any, Literal
 
-from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, StringConstraints
+from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, StringConstraints, model_validator
 
 
 def _boolean(value: Any) -> Any:
@@ -48,6 +48,10 @@ def _vagueness(value: Any) -> Any:
 
 def _expectation(value: Any) -> Any:
     return {"verdict": value} if isinstance(value, str) else value
+
+
+def _headed(value: Any) -> Any:
+    return {"heading": value} if isinstance(value, str) else value
 
 
 Boolean = Annotated[bool, BeforeValidator(_boolean)]
@@ -175,6 +179,17 @@ class Regulation(Document):
     tests: tuple[LawTest, ...] = ()
 
 
+class Omitted(Document):
+    """Subdivisions of a version that no regulation carries, and why; nothing means the section as a whole.
+
+    `not_for_ads` binds no vehicle under way, `not_expressible` cannot be said in the condition language, `elsewhere` is carried
+    by something else (a fact's meaning, a delegation, another regulation)."""
+
+    subdivision: Annotated[tuple[Subdivision, ...], BeforeValidator(_listed)] = ()
+    status: Literal["not_for_ads", "not_expressible", "elsewhere"]
+    why: Annotated[str, StringConstraints(min_length=1)]
+
+
 class Version(Document):
     """A section's text from `effective` (inclusive) to `until` (exclusive)."""
 
@@ -183,6 +198,7 @@ class Version(Document):
     enacted_by: str = ""
     text: str
     note: str = ""
+    omitted: tuple[Omitted, ...] = ()
     definitions: tuple[Definition, ...] = ()
     delegates: tuple[Delegation, ...] = ()
     regulations: tuple[Regulation, ...] = ()
@@ -209,6 +225,57 @@ class Cases(Document):
     """A file of cases."""
 
     cases: tuple[Case, ...]
+
+
+class Account(Document):
+    """How the sections of a group stand in the ledger, and why."""
+
+    status: Literal["partial", "not_for_ads", "not_expressible"]
+    why: Annotated[str, StringConstraints(min_length=1)]
+
+
+class OutlineSection(Document):
+    """A section as listed: its heading and, unless its file says how it stands, its status and why."""
+
+    heading: Annotated[str, StringConstraints(min_length=1)]
+    status: Literal["partial", "not_for_ads", "not_expressible"] | None = None
+    why: str = ""
+
+    @model_validator(mode="after")
+    def _with_reason(self) -> OutlineSection:
+        if (self.status is None) != (not self.why):
+            raise ValueError("a status needs its `why`, and a `why` its status")
+        return self
+
+
+Sections = dict[str, Annotated[OutlineSection, BeforeValidator(_headed)]]
+"""Section number, or a range of numbers (22650-22856) that is not listed one by one -> section."""
+
+
+class OutlineArticle(Document):
+    """An article with its sections; `all` is for those of them that have neither a file nor a status of their own."""
+
+    article: str
+    all: Account | None = None
+    sections: Sections
+
+
+class OutlineChapter(Document):
+    """A chapter with its articles, its sections, or both."""
+
+    chapter: str
+    all: Account | None = None
+    sections: Sections = Field(default_factory=dict)
+    articles: tuple[OutlineArticle, ...] = ()
+
+
+class Outline(Document):
+    """Every section of the chapters of a code that matter, with its heading; `listing` says how sure the list itself is."""
+
+    listing: Literal["verified", "seen", "recalled"]
+    source: str = ""
+    note: str = ""
+    outline: tuple[OutlineChapter, ...]
 
 
 class Assumed(Document):

@@ -181,6 +181,16 @@ class CaseEntry(Written):
     jurisdiction: Jurisdiction
 
 
+@dataclass(frozen=True, eq=False, repr=False)
+class OutlineEntry(Written):
+    """A code's outline."""
+
+    doc: documents.Outline
+    node: Mapping
+    file: SourceFile
+    jurisdiction: Jurisdiction
+
+
 def subdivision_of(doc: documents.Regulation) -> str:
     """The subdivision as cited; from the id where it is not written: a -> (a), a-1-bus -> (a)(1), b-right -> (b)."""
     return doc.subdivision if doc.subdivision is not None else "".join(f"({part})" for part in _levels(doc.id))

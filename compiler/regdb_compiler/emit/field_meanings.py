@@ -84,9 +84,15 @@ MEANINGS: Mapping[str, Mapping[str, str]] = {
         "enacted_by": "The act that made this version.",
         "text": "The whole rule in our own words, subdivision by subdivision.",
         "note": "Anything a reader should know of this version.",
+        "omitted": "Subdivisions that no regulation carries, and why.",
         "definitions": "Named conditions that this section defines.",
         "delegates": "What this section lets local authorities change.",
         "regulations": "The rules of this version.",
+    },
+    "Omitted": {
+        "subdivision": "As cited, (b) or (b)(2), or a list; left out: the section as a whole.",
+        "status": "not_for_ads, not_expressible, or elsewhere (a fact's meaning, a delegation, another regulation carries it).",
+        "why": "The reason, in one sentence.",
     },
     "Section": {
         "section": "The section's number, quoted, as the file is named.",
@@ -95,6 +101,32 @@ MEANINGS: Mapping[str, Mapping[str, str]] = {
         "topic": "Aligns sections of different codes, kebab-case.",
         "source": "Where the text was read, when, and how sure we are.",
         "versions": "All its dated versions, oldest first.",
+    },
+    "Account": {
+        "status": "partial, not_for_ads or not_expressible.",
+        "why": "The reason, in one sentence; of partial: what is missing.",
+    },
+    "OutlineSection": {
+        "heading": "Its heading, in three to eight words of our own.",
+        "status": "partial, not_for_ads or not_expressible; left out where its file says how it stands.",
+        "why": "The reason, in one sentence; of partial: what is missing.",
+    },
+    "OutlineArticle": {
+        "article": "Its number and heading.",
+        "all": "How those of its sections stand that have neither a file nor a status of their own.",
+        "sections": "Section number (or a range not listed one by one) -> heading, or heading, status and why.",
+    },
+    "OutlineChapter": {
+        "chapter": "Its number and heading.",
+        "all": "How those of its sections stand that have neither a file nor a status of their own.",
+        "sections": "Section number (or a range not listed one by one) -> heading, or heading, status and why.",
+        "articles": "Its articles, in order.",
+    },
+    "Outline": {
+        "listing": "How sure the list itself is: verified (two sources seen), seen (one) or recalled (none).",
+        "source": "Where the list was read.",
+        "note": "What of it could not be seen.",
+        "outline": "Chapters, in order.",
     },
     "Cases": {"cases": "Scenes that involve several sections."},
     "Assumed": {

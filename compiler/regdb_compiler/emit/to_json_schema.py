@@ -24,16 +24,19 @@ MODELS: Mapping[str, type[BaseModel]] = {
     "vocabulary": documents.VocabularyFile,
     "states": documents.StatesFile,
     "jurisdictions": documents.JurisdictionsFile,
+    "outline": documents.Outline,
 }
 """Schema name -> the document it describes."""
 
 _TITLES = {
     "section": "A section of a code", "cases": "Cases of the law", "vocabulary": "A file of the vocabulary",
     "states": "The state machine", "jurisdictions": "The tree of jurisdictions",
+    "outline": "The outline of a code",
 }  # fmt: skip
 _SHORT_FORMS: Mapping[str, JsonSchemaValue] = {
     "_listed": {"type": "string", "description": "One item may stand without a list."},
     "_vagueness": {"type": "integer", "minimum": 0, "maximum": 5},
+    "_headed": {"type": "string", "description": "The heading alone."},
     "_expectation": {"enum": ["legal", "illegal", "unknown"]},
 }
 """Validators of `documents` that also take a short form, and what that form looks like."""
