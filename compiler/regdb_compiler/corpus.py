@@ -43,6 +43,7 @@ class Corpus:
     diagnostics: tuple[Diagnostic, ...] = ()
     unread: frozenset[str] = frozenset()
     added: tuple[Path, ...] = ()
+    outlines: tuple[OutlineEntry, ...] = ()
 
     @property
     def has_language(self) -> bool:

@@ -117,7 +117,7 @@ def test_the_command_lists_prints_and_writes(small_codes: Path, tmp_path: Path, 
             main(["schema", *arguments, "--codes", str(small_codes)])
         return int(caught.value.code or 0), *capsys.readouterr()
 
-    assert run() == (0, "section\ncases\nvocabulary\nstates\njurisdictions\n", "")
+    assert run() == (0, "section\ncases\nvocabulary\nstates\njurisdictions\noutline\n", "")
     code, out, _ = run("section")
     assert (code, json.loads(out)["title"]) == (0, "A section of a code")
     code, listed, _ = run("--write", str(tmp_path / "schema"))
