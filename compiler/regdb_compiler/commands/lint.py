@@ -1,9 +1,11 @@
 """`regdb lint`: check the codes, mend what can be mended, and report the rest."""
 
 import datetime
+import gc
 import os
 import sys
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated
@@ -24,8 +26,20 @@ from regdb_compiler.lint.selection import Selection, UnknownRuleError
 from regdb_compiler.lint.statistics import statistics
 from regdb_compiler.report import FORMATS
 from regdb_compiler.report import text as text_report
+from regdb_compiler.source import collector_paused
 
 
+@contextmanager
+def _until_the_process_ends() -> Iterator[None]:
+    """All that is read lives until the command ends, so looking for garbage in it, also while Python shuts down, is time lost."""
+    with collector_paused():
+        try:
+            yield
+        finally:
+            gc.freeze()
+
+
+@_until_the_process_ends()
 def command(
     paths: Annotated[list[Path] | None, typer.Argument(help="Files or folders to report on; default: all.")] = None,
     codes: Annotated[Path | None, typer.Option(help="Folder of codes.")] = None,

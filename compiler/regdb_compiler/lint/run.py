@@ -34,8 +34,15 @@ def lint(
     """All findings on a build, in order. `select` and `ignore` hold codes, names and families (`R6`); errors of what cannot be read
     are always told. `today` is the day on which rules about time judge. Raises RuleFailureError, naming the rule."""
     selection = Selection(tuple(select), tuple(ignore))
+    with collector_paused():
+        return _lint(build, selection, baseline, today, all_rules() if rules is None else rules)
+
+
+def _lint(
+    build: Build, selection: Selection, baseline: Baseline | None, today: datetime.date | None, rules: Sequence[Rule]
+) -> tuple[Diagnostic, ...]:
     found = [finding for finding in build.diagnostics if selection.takes(finding.code, finding.name) or selection.always(finding)]
-    found += find(build, selection.of(all_rules() if rules is None else rules), today)
+    found += find(build, selection.of(rules), today)
     files = tuple(build.corpus.files.values())
     kept = suppression.apply(found, files, report_unused=selection.is_everything)
     kept = tuple(item for item in kept if selection.takes(item.code, item.name) or selection.always(item))

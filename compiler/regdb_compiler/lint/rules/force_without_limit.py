@@ -1,7 +1,8 @@
 """`force` stands in a regulation that has no limit, and is not the basic speed law.
 
 Why:
-    The kinds are kinds of limit. Without one they say nothing, save `advisory`, which silently makes the prohibition unbreakable, and `basic`: the basic speed law bounds speed without a number.
+    The kinds are kinds of limit. Without one they say nothing, save `advisory`, which silently makes the prohibition unbreakable, and
+    `basic`: the basic speed law bounds speed without a number.
 
 Fails:
     force: absolute
