@@ -6,7 +6,8 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 from regdb.citation import Citation, CitationError, parse_citation
-from regdb.condition import TRUE, Compare, Linear, Node, Not, OneOf, all_of
+from regdb.condition import TRUE, Compare, Linear, Node, Not, OneOf, Or, all_of
+from regdb.condition_text import to_json
 from regdb.regulation import Limit
 from regdb.units import UnitError, parse_quantity
 from regdb_compiler import documents
@@ -71,12 +72,23 @@ class Authority:
         parts: list[Node] = []
         if owners is not None and jurisdiction.road_owners and set(owners.values) - set(jurisdiction.road_owners):
             parts.append(OneOf(owners.name, tuple(sorted(set(owners.values) & set(jurisdiction.road_owners)))))
-        for item in self.delegations(rule)[:1]:
-            if owners is not None and item.doc.not_on:
-                parts.append(Not(OneOf(owners.name, tuple(sorted(item.doc.not_on)))))
-            for limit in rule.limits:
-                if limit.attribute == item.doc.attribute and limit.bound.terms:
-                    parts += _bounds_of(limit, item.doc.bounds)
+        options = self.delegations(rule)
+        allowing = [item for item in options if not any(self._against(rule, item))] or options
+        ways = {to_json(way): way for item in allowing for way in [self._way(rule, item)]}
+        if ways and TRUE not in ways.values():
+            found = tuple(way for _, way in sorted(ways.items()))
+            parts.append(found[0] if len(found) == 1 else Or(found))
+        return all_of(*parts)
+
+    def _way(self, rule: Resolved, item: DelegationEntry) -> Node:
+        """Under what condition one delegation carries a rule: not on some owners' roads, a posted value within its bounds."""
+        owners = self.corpus.vocabulary.facts.get("road.owner")
+        parts: list[Node] = []
+        if owners is not None and item.doc.not_on:
+            parts.append(Not(OneOf(owners.name, tuple(sorted(item.doc.not_on)))))
+        for limit in rule.limits:
+            if limit.attribute == item.doc.attribute and limit.bound.terms:
+                parts += _bounds_of(limit, item.doc.bounds)
         return all_of(*parts)
 
     def check(self) -> Iterator[Diagnostic]:

@@ -147,7 +147,7 @@ def _attributes(reading: _Reading) -> tuple[Node, tuple[Limit, ...]]:
     scope: list[Node] = []
     limits: list[Limit] = []
     vocabulary = reading.corpus.vocabulary
-    for name, text in reading.entry.doc.attributes.items():
+    for name, text in sorted(reading.entry.doc.attributes.items()):
         attribute = vocabulary.attributes.get(name)
         if attribute is None:
             known = ", ".join(vocabulary.attributes)

@@ -98,7 +98,7 @@ def test_columns_hold_the_law_s_own_words_and_numbers(connection: sqlite3.Connec
         "ORDER BY key DESC LIMIT 1"
     ).fetchone()
     assert row == (
-        "", "", '{"road_type":"highway","max_speed":"100 mph"}', "Car Following; Go Straight; Overtaking", '["passenger","bus"]',
+        "", "", '{"max_speed":"100 mph","road_type":"highway"}', "Car Following; Go Straight; Overtaking", '["passenger","bus"]',
         "2005-01-01", None,
     )  # fmt: skip
     limits = connection.execute("SELECT bound, value, unit, si, law_text FROM regulation_limit ORDER BY regulation, position").fetchall()

@@ -53,7 +53,7 @@ def _fact(fact: Fact) -> Line:
     return (
         fact.name, fact.kind, fact.meaning, fact.source, compact(fact.values), fact.unit, fact.dimension,
         None if stands is None else value_json(stands.value), stands.within if stands else "", stands.because if stands else "",
-        None if fact.quiet is None else value_json(fact.quiet), compact(dict(fact.phrases)), compact(fact.confusables),
+        None if fact.quiet is None else value_json(fact.quiet), compact(dict(sorted(fact.phrases.items()))), compact(fact.confusables),
         compact(dict(sorted(fact.codes.items()))),
     )  # fmt: skip
 

@@ -64,18 +64,21 @@ def _version(item: VersionEntry, key: int) -> Line:
 def _definitions(build: Build, versions: Iterable[VersionEntry], keys: Mapping[VersionEntry, int]) -> Iterator[Line]:
     table = build.resolution.definitions
     for version in versions:
-        for doc in version.doc.definitions:
+        for doc in sorted(version.doc.definitions, key=lambda item: item.name):
             tree = table.tree(doc.name, version.section.jurisdiction, version.effective)
             yield keys[version], doc.name, " ".join(doc.when.split()), to_json(TRUE if tree is None else tree), doc.quote
 
 
 def _delegations(versions: Iterable[VersionEntry], keys: Mapping[VersionEntry, int]) -> Iterator[Line]:
+    """Sorted within their version: the order in which a file names them means nothing."""
     for version in versions:
-        for doc in version.doc.delegates:
-            yield (
+        yield from sorted(
+            (
                 keys[version], str(version.section.citation), compact(doc.to), doc.attribute, doc.direction, doc.bounds.min,
                 doc.bounds.max, compact(doc.values), compact(doc.of), int(doc.sign), compact(doc.not_on), doc.condition,
-            )  # fmt: skip
+            )
+            for doc in version.doc.delegates
+        )  # fmt: skip
 
 
 def _regulation(row: Row, key: int, version: int) -> Line:
@@ -83,9 +86,9 @@ def _regulation(row: Row, key: int, version: int) -> Line:
     return (
         key, rule.id, version, rule.jurisdiction, rule.citation, rule.title, rule.topic, int(rule.legality), iso(rule.effective),
         iso(rule.until), rule.condition, " ".join(doc.condition.when.split()), " ".join(doc.condition.unless.split()),
-        to_json(rule.when), None if rule.unless is None else to_json(rule.unless), rule.result, rule.force, compact(doc.attributes),
-        in_words(doc.states.current), in_words(doc.states.next), rule.authority, doc.requires_sign, compact(doc.applies_to),
-        compact(rule.tags), rule.quote, rule.vagueness, rule.vague_because, rule.confidence,
+        to_json(rule.when), None if rule.unless is None else to_json(rule.unless), rule.result, rule.force,
+        compact(dict(sorted(doc.attributes.items()))), in_words(doc.states.current), in_words(doc.states.next), rule.authority,
+        doc.requires_sign, compact(doc.applies_to), compact(rule.tags), rule.quote, rule.vagueness, rule.vague_because, rule.confidence,
     )  # fmt: skip
 
 
