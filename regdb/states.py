@@ -50,6 +50,7 @@ class StateMachine:
         self.states = {state.id: state for state in states}
         self.initial = initial
         self._named: dict[str, tuple[str, ...]] = {}
+        self._transitions: dict[tuple[str, str], tuple[str, str]] = {}
         for state in self.states.values():
             for name in (state.id, state.name, *state.aliases):
                 self._named[name] = (*self._named.get(name, ()), state.id)
@@ -74,6 +75,12 @@ class StateMachine:
 
     def transition(self, current: str, following: str) -> tuple[str, str]:
         """Two names as ids: a name shared by several super-states means the one in the other's, else the initial one."""
+        found = self._transitions.get((current, following))
+        if found is None:
+            found = self._transitions[current, following] = self._transition(current, following)
+        return found
+
+    def _transition(self, current: str, following: str) -> tuple[str, str]:
         ours, theirs = self._candidates(current), self._candidates(following)
         pairs = [(a, b) for a in ours for b in theirs]
         same = [pair for pair in pairs if _super(pair[0]) == _super(pair[1])]

@@ -1,7 +1,7 @@
 """Quantities of the law: units with dimensions, exact conversion to SI, and back for people to read."""
 
 import re
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from fractions import Fraction
 from functools import lru_cache
 
@@ -62,10 +62,10 @@ class Quantity:
 
     value: Fraction
     unit: Unit
+    si: float = field(init=False, compare=False)
 
-    @property
-    def si(self) -> float:
-        return float(self.value * self.unit.factor)
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "si", float(self.value * self.unit.factor))
 
     @property
     def dimension(self) -> str:

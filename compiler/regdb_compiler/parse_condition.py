@@ -14,6 +14,7 @@ from lark import Lark, Token, Transformer, UnexpectedCharacters, UnexpectedEOF, 
 from regdb.condition import Node
 from regdb.units import UNITS
 from regdb.vocabulary import Vocabulary
+from regdb_compiler.quick_condition import read_linear_quickly, read_quickly
 from regdb_compiler.raw_condition import Raw, RawCompare, RawHas, RawJoin, RawKnown, RawName, RawNot, RawOneOf, RawTerm, RawWithin, Word
 from regdb_compiler.type_condition import Problem, Typer
 
@@ -71,14 +72,19 @@ def parse_condition(text: str, vocabulary: Vocabulary, definition: Callable[[str
 
 def read_raw(text: str) -> Raw | Problem:
     """The condition before types: words with their offsets, or the one reason why it cannot be read."""
-    try:
-        raw: Raw = _parser().parse(text, start="start")  # type: ignore[assignment]  # the transformer returns Raw
-    except UnexpectedInput as error:
-        return _syntax_problem(text, error)
-    if _is_deep(raw):
+    raw = read_quickly(text) or read_by_grammar(text)
+    if not isinstance(raw, Problem) and _is_deep(raw):
         message = f"the condition is nested deeper than {MAX_DEPTH} levels"
         return Problem("R017", "condition-syntax", message, 0, min(len(text), 40), "name parts of it as definitions")
     return raw
+
+
+def read_by_grammar(text: str) -> Raw | Problem:
+    """The condition by the grammar itself, however deep: the reference for the quick reader, and the source of every message."""
+    try:
+        return _parser().parse(text, start="start")  # type: ignore[return-value]  # the transformer returns Raw
+    except UnexpectedInput as error:
+        return _syntax_problem(text, error)
 
 
 def _is_deep(raw: Raw) -> bool:
@@ -97,6 +103,11 @@ def _inner(raw: Raw) -> tuple[Raw, ...]:
 
 def read_linear(text: str) -> tuple[RawTerm, ...] | Problem:
     """A limit's bound before types: `25 mph`, `posted.speed - 5 mph`."""
+    return read_linear_quickly(text) or read_linear_by_grammar(text)
+
+
+def read_linear_by_grammar(text: str) -> tuple[RawTerm, ...] | Problem:
+    """A limit's bound by the grammar itself."""
     try:
         return _parser().parse(text, start="linear")  # type: ignore[return-value]
     except UnexpectedInput as error:

@@ -115,14 +115,13 @@ def _sequence(items: list[Any], start: Any, end: int, reading: _Reading) -> Sequ
 
 
 def _mapping(items: list[Any], start: Any, end: int, reading: _Reading) -> Mapping:
-    keys, values = items[::2], items[1::2]
+    entries = tuple(zip(items[::2], items[1::2], strict=True))
     try:
-        index = {key.text: value for key, value in zip(keys, values, strict=True)}
+        index = {key.text: value for key, value in entries}
     except AttributeError:
-        keys, values = _only_text_keys(keys, values, reading)
-        index = {key.text: value for key, value in zip(keys, values, strict=True)}
-    entries = tuple(zip(keys, values, strict=True))
-    if len(index) != len(keys):
+        entries = _only_text_keys(entries, reading)
+        index = {key.text: value for key, value in entries}
+    if len(index) != len(entries):
         entries = _first_of_each(entries, reading)
         index = {key.text: value for key, value in entries}
     if "<<" in index:
@@ -130,15 +129,14 @@ def _mapping(items: list[Any], start: Any, end: int, reading: _Reading) -> Mappi
     return Mapping(entries, index, start.flow_style, reading.lines, start.start_mark.index, end)
 
 
-def _only_text_keys(keys: list[Any], values: list[Any], reading: _Reading) -> tuple[list[Any], list[Any]]:
+def _only_text_keys(entries: tuple[tuple[Any, Any], ...], reading: _Reading) -> tuple[tuple[Any, Any], ...]:
     """Report the keys that are lists or mappings, and leave their entries out."""
-    for key in keys:
+    for key, _ in entries:
         if not isinstance(key, Scalar):
             shape = "list" if isinstance(key, Sequence) else "mapping"
             advice = "write one word as key; put it in quotes if the brackets or braces are text"
             reading.report("R012", "key-not-text", f"this key is a {shape}", key.start, key.content_end, advice)
-    kept = [pair for pair in zip(keys, values, strict=True) if isinstance(pair[0], Scalar)]
-    return [key for key, _ in kept], [value for _, value in kept]
+    return tuple(pair for pair in entries if isinstance(pair[0], Scalar))
 
 
 def _first_of_each(entries: tuple[tuple[Scalar, Node], ...], reading: _Reading) -> tuple[tuple[Scalar, Node], ...]:
