@@ -18,6 +18,7 @@ from typing import Any
 from regdb_compiler.driver import build
 from regdb_compiler.emit.to_sqlite import write_database
 from regdb_compiler.lint.run import lint
+from regdb_compiler.source import collector_paused
 from regdb_runtime.database import RegulationDatabase
 
 
@@ -43,4 +44,5 @@ def measure(codes: Path) -> dict[str, Any]:
 
 
 if __name__ == "__main__":
-    print(json.dumps(measure(Path(sys.argv[1]))))
+    with collector_paused():  # as the commands do
+        print(json.dumps(measure(Path(sys.argv[1]))))

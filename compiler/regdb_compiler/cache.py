@@ -97,10 +97,12 @@ def _compile(codes: Path, path: Path) -> Build:
     from regdb_compiler.diagnostics import RegdbInputError
     from regdb_compiler.driver import build
     from regdb_compiler.emit.to_sqlite import write_database
+    from regdb_compiler.source import collector_paused
 
-    found = build(codes)
     try:
-        write_database(found, path)
+        with collector_paused():  # what reading has made is still needed when the rows are written
+            found = build(codes)
+            write_database(found, path)
     except RegdbInputError as error:
         shown = [f"{d.place} {d.code} {d.message}" for d in error.diagnostics[:ERRORS_SHOWN]]
         more = len(error.diagnostics) - len(shown)

@@ -33,7 +33,8 @@ class Build:
     @cached_property
     def rows(self) -> tuple[Row, ...]:
         """Rows of every sound regulation. With errors among the diagnostics they are for looking at, not for driving."""
-        return lower(self.resolution, self.targets, self.authority)
+        with collector_paused():
+            return lower(self.resolution, self.targets, self.authority)
 
     @cached_property
     def regulations(self) -> tuple[Regulation, ...]:

@@ -14,6 +14,7 @@ from regdb_compiler.driver import Build, build
 from regdb_compiler.emit.outputs import Outputs, write_outputs
 from regdb_compiler.report import to_json as findings_json
 from regdb_compiler.report.text import render
+from regdb_compiler.source import collector_paused
 
 
 def command(
@@ -24,6 +25,11 @@ def command(
     format_: Output = Format.text,
 ) -> None:
     day = asked_day(on).number if on else None
+    with collector_paused():  # everything made here lives until the end
+        _compile(codes, output, on, day, format_, parquet=parquet)
+
+
+def _compile(codes: Path | None, output: Path, on: str, day: int | None, format_: Format, *, parquet: bool) -> None:
     with working("reading the codes"):
         found = build(codes_folder(codes))
     errors = [item for item in found.diagnostics if item.level == "error"]
