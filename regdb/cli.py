@@ -34,6 +34,7 @@ COMMANDS: dict[str, Command] = {
     "rule": Command("regdb_compiler.commands.rule", "compiler", "Show a lint rule's page, or list the rules."),
     "compile": Command("regdb_compiler.commands.compile", "compiler", "Compile the codes into SQLite, CSV, JSON and a manifest."),
     "test": Command("regdb_compiler.commands.test", "compiler", "Run the law's own tests, with coverage."),
+    "coverage": Command("regdb_compiler.commands.coverage", "compiler", "Say of every section of the codes whether it is encoded, and why not."),
     "show": Command("regdb_compiler.commands.show", "compiler", "Show a section, regulation, fact or state."),
     "search": Command("regdb_compiler.commands.search", "compiler", "Search the law by words."),
     "chain": Command("regdb_compiler.commands.chain", "compiler", "Print what displaces a regulation and what it displaces."),

@@ -249,7 +249,7 @@ class OutlineSection(Document):
 
 
 Sections = dict[str, Annotated[OutlineSection, BeforeValidator(_headed)]]
-"""Section number, or a range of numbers (22650-22856) that is not listed one by one -> section."""
+"""Section number, or a range of numbers (22650 to 22856) that is not listed one by one -> section."""
 
 
 class OutlineArticle(Document):
