@@ -1,11 +1,11 @@
-"""`regdb test`: run the law's own tests, with coverage."""
+"""`regdb test`: run the law's own tests, with coverage, boundaries and mutation."""
 
 from __future__ import annotations
 
 import os
 import sys
 import time
-from collections.abc import Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from enum import StrEnum
 from pathlib import Path
 from typing import Annotated
@@ -13,6 +13,7 @@ from typing import Annotated
 import typer
 
 from regdb.front import FrontError, codes_folder
+from regdb_compiler.commands.mutants import MutateOptions, say_boundaries, say_mutation
 from regdb_compiler.driver import Build, build
 from regdb_compiler.law_tests import to_json, to_junit
 from regdb_compiler.law_tests.coverage import Coverage, cover
@@ -38,11 +39,23 @@ def command(
     coverage: Annotated[bool, typer.Option("--coverage", help="Show what no test has tried: by rule, branch and state.")] = False,
     fail_under: Annotated[float, typer.Option("--cov-fail-under", metavar="PERCENT", help="Findings if coverage is less.")] = 0.0,
     format_: Annotated[Format, typer.Option("--format", help="text, json or junit.")] = Format.text,
+    boundaries: Annotated[bool, typer.Option("--boundaries", help="Judge scenes below, at and above every number of the law.")] = False,
+    mutate: Annotated[bool, typer.Option("--mutate", help="Change the law, one thing at a time; show what no test notices.")] = False,
+    sample: Annotated[int, typer.Option(metavar="N", min=0, help="With --mutate: only N of the mutants.")] = 0,
+    seed: Annotated[int, typer.Option(metavar="S", help="With --sample: which of them.")] = 0,
+    mutate_under: Annotated[float, typer.Option("--mutate-under", metavar="PERCENT", help="Findings if the mutation score is less.")] = 0.0,
     first: Annotated[bool, typer.Option("-x", help="Stop at the first test that does not pass.")] = False,
     quiet: Annotated[bool, typer.Option("-q", help="One line for each test that does not pass.")] = False,
 ) -> None:
     started = time.perf_counter()
     found = build(codes_folder(codes))
+    wanted = _wanted(found, paths or [])
+    if boundaries or mutate or mutate_under:
+        if format_ is Format.junit:
+            raise typer.BadParameter("boundaries and mutants are written as text or json", param_hint="--format")
+        if boundaries:
+            raise typer.Exit(say_boundaries(found, wanted, json=format_ is Format.json))
+        raise typer.Exit(say_mutation(found, wanted, MutateOptions(sample, seed, mutate_under, format_ is Format.json)))
     outcomes = tuple(_until_first(judge_tests(found, _chosen(found, paths or [], word)), first))
     counted = cover(found, outcomes) if coverage or fail_under else None
     if format_ is Format.json:
@@ -60,14 +73,19 @@ def command(
 
 def _chosen(found: Build, paths: list[Path], word: str) -> list[LawTest]:
     """The tests of the named files and folders whose name, regulation or path has the word. Raises FrontError."""
+    wanted, lower = _wanted(found, paths), word.lower()
+    tests = (test for test in found.law_tests if wanted(test.where.path))
+    return [test for test in tests if lower in f"{test.name} {test.subject} {test.where.path}".lower()]
+
+
+def _wanted(found: Build, paths: list[Path]) -> Callable[[str], bool]:
+    """Whether a file is one of those named, or under a folder named; every file where none is. Raises FrontError."""
     base = found.corpus.root.parent
     roots = [_within(path, base) for path in paths]
     for path, root in zip(paths, roots, strict=True):
         if root != "." and not any(_under(name, root) for name in found.corpus.files):
             raise FrontError(f"{path} is no file or folder of the codes in {found.corpus.root}")
-    tests = [test for test in found.law_tests if not roots or any(_under(test.where.path, root) for root in roots)]
-    lower = word.lower()
-    return [test for test in tests if lower in f"{test.name} {test.subject} {test.where.path}".lower()]
+    return lambda name: not roots or any(_under(name, root) for root in roots)
 
 
 def _within(path: Path, base: Path) -> str:

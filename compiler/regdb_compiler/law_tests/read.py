@@ -13,6 +13,7 @@ from regdb_compiler.corpus import Corpus
 from regdb_compiler.diagnostics import Diagnostic, Place
 from regdb_compiler.entries import RegulationEntry, Written
 from regdb_compiler.law_tests.expect import Expected, read_expected
+from regdb_compiler.law_tests.several_states import each_transition, listed
 from regdb_compiler.parse import node_at
 from regdb_compiler.source import Mapping
 
@@ -91,10 +92,14 @@ def check_tests(tests: Iterable[LawTest]) -> Iterator[Diagnostic]:
 def _beside(corpus: Corpus) -> Iterator[LawTest]:
     for entry in corpus.regulations:
         for position, doc in enumerate(entry.doc.tests):
-            reading = _Reading(corpus, entry, ("tests", position), str(entry.citation))
             raw = _with_default_transition(doc.plan, entry.doc.states, corpus.machine)
             day = doc.on.toordinal() if doc.on else entry.default_day
-            yield _read(reading, doc, raw, entry, entry.jurisdiction, day)
+            plans, alone = each_transition(raw, corpus.machine)
+            for plan in plans:
+                reading = _Reading(corpus, entry, ("tests", position), str(entry.citation))
+                if alone:
+                    reading.unreadable(f"the machine has no transition between these states with {listed(alone)}", "plan")
+                yield _read(reading, doc, plan, entry, entry.jurisdiction, day)
 
 
 def _cases(corpus: Corpus) -> Iterator[LawTest]:
