@@ -5,7 +5,7 @@ from __future__ import annotations
 import hashlib
 import json
 import os
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -14,6 +14,7 @@ from regdb.front import FrontError, added_codes
 from regdb.schema import APPLICATION_ID, USER_VERSION
 from regdb.version import VERSION
 from regdb_compiler.emit.in_place import folder_beside, move_in
+from regdb_compiler.input_files import all_input_files
 
 if TYPE_CHECKING:
     from regdb_compiler.driver import Build
@@ -55,19 +56,6 @@ def input_hash(codes: Path) -> str:
     for line in _own_files():
         digest.update(line.encode("utf-8", "surrogateescape"))
     return digest.hexdigest()
-
-
-def input_files(codes: Path) -> Iterator[tuple[str, Path]]:
-    """Every YAML file of a codes folder with its name in it, in order of the names; hidden ones are no input."""
-    found = sorted((path.relative_to(codes).as_posix(), path) for path in codes.rglob("*.yaml"))
-    return ((name, path) for name, path in found if not any(part.startswith(".") for part in name.split("/")))
-
-
-def all_input_files(codes: Path, added: Iterable[Path]) -> Iterator[tuple[str, Path]]:
-    """The files of the codes, then those of the folders added to them, whose names begin with their folder's."""
-    yield from input_files(codes)
-    for folder in added:
-        yield from ((f"{folder.resolve().name}/{name}", path) for name, path in input_files(folder))
 
 
 def _own_files() -> Iterator[str]:

@@ -10,9 +10,9 @@ from dataclasses import asdict
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from regdb_compiler.cache import all_input_files
 from regdb_compiler.diagnostics import Diagnostic
 from regdb_compiler.emit.files import FileRecord, record_of
+from regdb_compiler.input_files import all_input_files
 
 if TYPE_CHECKING:
     from regdb_compiler.driver import Build
