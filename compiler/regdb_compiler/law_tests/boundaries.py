@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 from regdb.condition import FALSE, TRUE, And, Compare, Linear, Literal, Node, Not, Or, Within, evaluate, linear_value, literals
 from regdb.condition_text import show
@@ -19,10 +20,12 @@ from regdb.truth import Truth, conjoin, negate
 from regdb.turning import changes
 from regdb.vocabulary import Value
 from regdb_compiler.diagnostics import Place
-from regdb_compiler.driver import Build
 from regdb_compiler.law_tests.judge import judge_tests
 from regdb_compiler.law_tests.literal_place import place_of_literal
 from regdb_compiler.lower import Row
+
+if TYPE_CHECKING:
+    from regdb_compiler.driver import Build
 
 SIDES = ("below", "at", "above")
 

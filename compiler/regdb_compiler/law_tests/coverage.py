@@ -10,6 +10,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
 from functools import cached_property
+from typing import TYPE_CHECKING
 
 from regdb.condition import FALSE, TRUE, Literal, evaluate, linear_value, literals
 from regdb.condition_text import show
@@ -18,10 +19,12 @@ from regdb.regulation import Regulation
 from regdb.states import StateMachine
 from regdb_compiler import documents
 from regdb_compiler.diagnostics import Place
-from regdb_compiler.driver import Build
 from regdb_compiler.law_tests.literal_place import place_of_literal
 from regdb_compiler.law_tests.outcome import Outcome
 from regdb_compiler.lower import Row
+
+if TYPE_CHECKING:
+    from regdb_compiler.driver import Build
 
 KINDS = ("rule", "branch", "state")
 

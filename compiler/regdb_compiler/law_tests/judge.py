@@ -4,15 +4,18 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Iterator
+from typing import TYPE_CHECKING
 
 from regdb.explanation import show_bound
 from regdb.meaning import Decision, Judgement
 from regdb.situation import Situation
-from regdb_compiler.driver import Build
 from regdb_compiler.law_tests.expect import ExpectedLimit
 from regdb_compiler.law_tests.outcome import Difference, Outcome
 from regdb_compiler.law_tests.read import LawTest
 from regdb_compiler.law_tests.take_part import Law
+
+if TYPE_CHECKING:
+    from regdb_compiler.driver import Build
 
 
 def judge_tests(build: Build, tests: Iterable[LawTest]) -> Iterator[Outcome]:
