@@ -39,6 +39,7 @@ COMMANDS: dict[str, Command] = {
     "search": Command("regdb_compiler.commands.search", "compiler", "Search the law by words."),
     "chain": Command("regdb_compiler.commands.chain", "compiler", "Print what displaces a regulation and what it displaces."),
     "diff": Command("regdb_compiler.commands.diff", "compiler", "Compare two dates, jurisdictions, folders or databases by field."),
+    "text": Command("regdb_compiler.commands.text", "compiler", "Keep official text beside the codes and check the quotes against it."),
     "schema": Command("regdb_compiler.commands.schema", "compiler", "Print or write the JSON Schema of the file formats."),
     "check": Command("regdb_runtime.commands.check", "", "Ask whether a manoeuvre is lawful in a scene."),
     "explain": Command("regdb_runtime.commands.explain", "", "Say why a verdict is as it is, and what would turn it."),

@@ -4,11 +4,13 @@ An example is a YAML mapping. Its keys go where they belong: `section`, `title`,
 `text`, `delegates`, `definitions` and `regulations` to its version, the rest to its regulation. `regulations` lists several,
 `versions` several versions; `facts` are declared besides, `cases` stand in the cases folder, `local` is a regulation of the city,
 `path` is the file's path and `file` its whole text, `append` is put at the file's end as it stands. null takes a field away.
+`texts` are attached as official text: section -> its words, or [the words that were accepted, the words attached since].
 """
 
 from __future__ import annotations
 
 import copy
+import datetime
 import shutil
 from collections.abc import Mapping
 from pathlib import Path
@@ -19,11 +21,14 @@ import yaml
 from regdb_compiler.diagnostics import Diagnostic
 from regdb_compiler.driver import Build, build
 from regdb_compiler.lint.rule import Rule
+from regdb_compiler.official.passage import Passage
+from regdb_compiler.official.reading import SourceText
+from regdb_compiler.official.shelf import Shelf, accept, attach, write_shelf
 
 WORLD = Path(__file__).parent / "example_world"
 SECTION_KEYS = ("section", "title", "location", "topic", "source")
 VERSION_KEYS = ("text", "note", "enacted_by", "definitions", "delegates")
-OWN_KEYS = ("regulations", "versions", "facts", "cases", "local", "path", "file", "append")
+OWN_KEYS = ("regulations", "versions", "facts", "cases", "local", "path", "file", "append", "texts")
 Example = Mapping[str, Any]
 
 
@@ -41,6 +46,8 @@ def write_example(example: Example, folder: Path) -> Path:
     shutil.copytree(WORLD, codes, dirs_exist_ok=True)
     if "facts" in example:
         _dump(codes / "vocabulary" / "more.yaml", {"facts": example["facts"]})
+    if "texts" in example:
+        _attach(folder / "texts", example["texts"])
     if "cases" in example:
         _dump(codes / "st" / "cases" / "example.yaml", {"cases": example["cases"]})
     if "local" in example:
@@ -54,6 +61,17 @@ def write_example(example: Example, folder: Path) -> Path:
     if "append" in example:
         path.write_text(path.read_text("utf-8") + example["append"], "utf-8", newline="")
     return path
+
+
+def _attach(folder: Path, texts: Mapping[str, Any]) -> None:
+    shelf, day = Shelf(folder), datetime.date(2026, 1, 2)
+    for turn in range(2):
+        told = {name: [words] if isinstance(words, str) else words for name, words in texts.items()}
+        passages = tuple(Passage(name, "", words[turn]) for name, words in told.items() if turn < len(words))
+        shelf = attach(shelf, "st", SourceText("https://example.org", "plain", "", passages), day)
+        for name, words in told.items() if turn == 0 else ():
+            shelf = accept(shelf, "st", name, day) if len(words) > 1 else shelf
+    write_shelf(shelf)
 
 
 def build_example(example: Example, folder: Path) -> Build:

@@ -6,6 +6,7 @@ import datetime
 from collections.abc import Iterator, Sequence
 from time import perf_counter
 
+from regdb.front import FrontError
 from regdb_compiler import baseline as known_findings
 from regdb_compiler import suppression
 from regdb_compiler.baseline import Baseline
@@ -72,5 +73,7 @@ def _seconds(rule: Rule, build: Build) -> float:
 def _run(rule: Rule, build: Build) -> Iterator[Diagnostic]:
     try:
         yield from rule.check(build)
+    except FrontError:  # a file beside the codes that a person can put right
+        raise
     except Exception as error:
         raise RuleFailureError(f"lint rule {rule.code} {rule.name} ({rule.origin}) failed: {type(error).__name__}: {error}") from error
