@@ -249,7 +249,7 @@ class OutlineSection(Document):
 
 
 Sections = dict[str, Annotated[OutlineSection, BeforeValidator(_headed)]]
-"""Section number, or a range of numbers (22650 to 22856) that is not listed one by one -> section."""
+"""Section number, or words for sections that are not listed one by one (22650 to 22711, rest of Division F) -> section."""
 
 
 class OutlineArticle(Document):

@@ -46,7 +46,7 @@ class Account:
     @property
     def is_range(self) -> bool:
         """Whether it stands for sections that are not listed one by one."""
-        return " to " in self.section
+        return " " in self.section
 
 
 @dataclass(frozen=True)

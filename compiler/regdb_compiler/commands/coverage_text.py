@@ -8,9 +8,9 @@ from collections.abc import Iterator, Sequence
 from regdb_compiler.ledger import MEANINGS, STATUSES, Account, CodeLedger, count, percent
 
 WIDTH = 80
-_NAME = 39
+_NAME = 41
 _HEADS = ("enc", "part", "not ADS", "inexpr", "open", "all")
-_WIDTHS = tuple(max(len(head), 4) + 2 for head in _HEADS)
+_WIDTHS = tuple(max(len(head), 3) + 2 for head in _HEADS)
 
 
 def table(found: Sequence[CodeLedger]) -> str:
@@ -24,7 +24,7 @@ def table(found: Sequence[CodeLedger]) -> str:
 
 def _code(code: CodeLedger) -> Iterator[str]:
     jurisdiction, outline = code.jurisdiction, code.outline
-    listing = "no outline" if outline is None else f"list of sections {outline.listing}"
+    listing = "no outline" if outline is None else f"list {outline.listing}"
     yield f"{jurisdiction.short}: {jurisdiction.name} ({listing})"
     yield f"{'':<{_NAME}}" + "".join(f"{head:>{width}}" for head, width in zip(_HEADS, _WIDTHS, strict=True))
     chapter = ""
@@ -56,7 +56,7 @@ def _legend(accounts: tuple[Account, ...]) -> str:
     told = ", ".join(f"{head}: {MEANINGS[status]}" for head, status in zip(_HEADS, STATUSES, strict=False))
     ranges = sum(item.is_range for item in accounts)
     unlisted = sum(not item.listed for item in accounts)
-    told += f". {ranges} ranges of sections that are not listed one by one count as one each." if ranges else "."
+    told += f". {ranges} entries stand for sections that are not listed one by one and count as one each." if ranges else "."
     told += f" {unlisted} files are listed in no outline; see --missing." if unlisted else ""
     return textwrap.fill(told, WIDTH)
 
@@ -87,4 +87,7 @@ def one(item: Account) -> str:
 
 
 def _short(text: str, width: int) -> str:
+    """The name at a width; the kinds of parts are abbreviated before anything is cut."""
+    for word, abbreviation in (("Division ", "Div. "), ("Chapter ", "Ch. "), ("Article ", "Art. ")) if len(text) > width else ():
+        text = text.replace(word, abbreviation)
     return text if len(text) <= width else f"{text[: width - 3].rstrip()}..."

@@ -114,12 +114,12 @@ MEANINGS: Mapping[str, Mapping[str, str]] = {
     "OutlineArticle": {
         "article": "Its number and heading.",
         "all": "How those of its sections stand that have neither a file nor a status of their own.",
-        "sections": "Section number (or a range not listed one by one) -> heading, or heading, status and why.",
+        "sections": "Section number (or words such as 22650 to 22711, rest of Division F) -> heading, or heading, status and why.",
     },
     "OutlineChapter": {
         "chapter": "Its number and heading.",
         "all": "How those of its sections stand that have neither a file nor a status of their own.",
-        "sections": "Section number (or a range not listed one by one) -> heading, or heading, status and why.",
+        "sections": "Section number (or words such as 22650 to 22711, rest of Division F) -> heading, or heading, status and why.",
         "articles": "Its articles, in order.",
     },
     "Outline": {

@@ -2,8 +2,8 @@
 
 An example is a YAML mapping. Its keys go where they belong: `section`, `title`, `location`, `topic` and `source` to the section,
 `text`, `delegates`, `definitions` and `regulations` to its version, the rest to its regulation. `regulations` lists several,
-`versions` several versions; `facts` are declared besides, `cases` stand in the cases folder, `local` is a regulation of the city,
-`path` is the file's path and `file` its whole text, `append` is put at the file's end as it stands. null takes a field away.
+`versions` several versions; `facts` are declared besides, `cases` stand in the cases folder, `outline` lists the state's
+sections, `local` is a regulation of the city, `path` is the file's path and `file` its whole text, `append` is put at the file's end as it stands. null takes a field away.
 `texts` are attached as official text: section -> its words, or [the words that were accepted, the words attached since].
 """
 
@@ -27,8 +27,8 @@ from regdb_compiler.official.shelf import Shelf, accept, attach, write_shelf
 
 WORLD = Path(__file__).parent / "example_world"
 SECTION_KEYS = ("section", "title", "location", "topic", "source")
-VERSION_KEYS = ("text", "note", "enacted_by", "definitions", "delegates")
-OWN_KEYS = ("regulations", "versions", "facts", "cases", "local", "path", "file", "append", "texts")
+VERSION_KEYS = ("text", "note", "enacted_by", "omitted", "definitions", "delegates")
+OWN_KEYS = ("regulations", "versions", "facts", "cases", "outline", "local", "path", "file", "append", "texts")
 Example = Mapping[str, Any]
 
 
@@ -50,6 +50,8 @@ def write_example(example: Example, folder: Path) -> Path:
         _attach(folder / "texts", example["texts"])
     if "cases" in example:
         _dump(codes / "st" / "cases" / "example.yaml", {"cases": example["cases"]})
+    if "outline" in example:
+        _dump(codes / "st" / "outline.yaml", {"listing": "seen", "outline": example["outline"]})
     if "local" in example:
         _dump(codes / "ci" / "80.yaml", _section({**example["local"], "section": "80", "topic": "city-speed"}, {"authority": "ST 40"}))
     path: Path = codes / example.get("path", f"st/{example.get('section', '100')}.yaml")

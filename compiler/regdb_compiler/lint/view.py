@@ -13,6 +13,7 @@ from regdb_compiler.authority import DelegationEntry
 from regdb_compiler.diagnostics import Place
 from regdb_compiler.driver import Build
 from regdb_compiler.entries import RegulationEntry, VersionEntry
+from regdb_compiler.ledger import CodeLedger, ledgers
 from regdb_compiler.resolve import Resolved
 
 _MARK = re.compile(r"^[ \t]*\(([a-z])\)", re.MULTILINE)
@@ -108,6 +109,11 @@ class View:
         names = [name for e in self.corpus.regulations for name in (*e.doc.exception_to, *e.doc.overrides)]
         names += [name for version in self.corpus.versions for doc in version.doc.delegates for name in doc.of]
         return frozenset(name.removeprefix("tag:") for name in names if name.startswith("tag:"))
+
+    @cached_property
+    def ledgers(self) -> tuple[CodeLedger, ...]:
+        """How every section stands, by code."""
+        return ledgers(self.corpus)
 
     @cached_property
     def delegations(self) -> tuple[DelegationEntry, ...]:
