@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import difflib
 import importlib
 import io
 import os
@@ -63,6 +62,8 @@ class LazyGroup(TyperGroup):
         try:
             return super().resolve_command(ctx, args)
         except TyperException as error:
+            import difflib  # a tenth of the time of `--help`, for those who mistype only
+
             near = difflib.get_close_matches(args[0], COMMANDS, 1) if args else []
             if near and hasattr(error, "message"):
                 error.message = f"{error.message.rstrip('.')}; did you mean {near[0]}?"
