@@ -39,10 +39,11 @@ class Citation:
         return (self.code, self.section) == (other.code, other.section) and other.parts[: len(self.parts)] == self.parts
 
     def __lt__(self, other: "Citation") -> bool:
-        return self._key() < other._key()
+        return self.sort_key < other.sort_key
 
-    def _key(self) -> tuple[str, tuple[tuple[int, int, str], ...], tuple[tuple[int, int, str], ...], str]:
-        """The text comes last, so that 15.20.010 and 15.20.10 have an order too."""
+    @property
+    def sort_key(self) -> tuple[str, tuple[tuple[int, int, str], ...], tuple[tuple[int, int, str], ...], str]:
+        """What citations are sorted by. The text comes last, so that 15.20.010 and 15.20.10 have an order too."""
         return self.code, section_key(self.section), tuple(_part_key(part) for part in self.parts), str(self)
 
 

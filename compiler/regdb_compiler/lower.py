@@ -25,7 +25,7 @@ class Row:
 def lower(resolution: Resolution, targets: Targets, authority: Authority) -> tuple[Row, ...]:
     """Sound regulations as rows, sorted by citation, then id, then date: the order of the database."""
     rows = [_row(rule, targets, authority) for rule in resolution.rules if rule.sound]
-    return tuple(sorted(rows, key=lambda row: (row.entry.citation, row.regulation.id, row.regulation.effective or 0)))
+    return tuple(sorted(rows, key=lambda row: (row.entry.citation.sort_key, row.regulation.id, row.regulation.effective or 0)))
 
 
 def _row(rule: Resolved, targets: Targets, authority: Authority) -> Row:

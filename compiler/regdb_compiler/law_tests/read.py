@@ -91,12 +91,13 @@ def check_tests(tests: Iterable[LawTest]) -> Iterator[Diagnostic]:
 
 def _beside(corpus: Corpus) -> Iterator[LawTest]:
     for entry in corpus.regulations:
+        law, default_day = str(entry.citation), entry.default_day
         for position, doc in enumerate(entry.doc.tests):
             raw = _with_default_transition(doc.plan, entry.doc.states, corpus.machine)
-            day = doc.on.toordinal() if doc.on else entry.default_day
+            day = doc.on.toordinal() if doc.on else default_day
             plans, alone = each_transition(raw, corpus.machine)
             for plan in plans:
-                reading = _Reading(corpus, entry, ("tests", position), str(entry.citation))
+                reading = _Reading(corpus, entry, ("tests", position), law)
                 if alone:
                     reading.unreadable(f"the machine has no transition between these states with {listed(alone)}", "plan")
                 yield _read(reading, doc, plan, entry, entry.jurisdiction, day)
