@@ -10,11 +10,13 @@ import os
 import subprocess
 import sys
 from collections import Counter
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from functools import cache
 from pathlib import Path
 
 from regdb_compiler.driver import Build, build
+from regdb_compiler.entries import SectionEntry
+from regdb_compiler.ledger import MEANINGS, STATUSES, Account, count, ledgers
 
 from regdb import schema
 from regdb.cli import COMMANDS
@@ -28,7 +30,7 @@ NOTE = "<!-- Written by docs/generate.py; do not edit. -->\n\n"
 @cache
 def law() -> Build:
     """The shipped codes."""
-    return build(ROOT / "codes")
+    return build(ROOT / "codes", added=())
 
 
 def cell(text: object) -> str:
@@ -108,34 +110,70 @@ def database() -> str:
 
 
 def codes() -> str:
-    """What is encoded, per code and section, and how sure we are of it."""
+    """What is encoded and what is not, per code and section, and how sure we are of it."""
     corpus = law().corpus
-    parts = ["# The codes as encoded\n"]
-    for jurisdiction in corpus.tree:
+    found = ledgers(corpus)
+    parts = ["# The codes as encoded\n", _ABOUT_CODES, _shares("code", ((item.jurisdiction.name, item.accounts) for item in found))]
+    for ledger in found:
+        jurisdiction = ledger.jurisdiction
         own = [section for section in corpus.sections if section.jurisdiction is jurisdiction]
-        if not own:
-            continue
-        sure = Counter(section.doc.source.confidence for section in own)
         count = len({entry.id for entry in corpus.regulations if entry.jurisdiction is jurisdiction})
-        told = ", ".join(f"{sure[level]} {level}" for level in ("verified", "seen", "recalled") if sure[level])
-        parts.append(f"## {jurisdiction.name}\n\n{len(own)} sections ({told}), {count} regulations.\n")
-        rows = (
-            (str(s.citation), s.doc.title, len({r.doc.id for v in s.versions for r in v.regulations}), len(s.versions), s.doc.source.confidence)
-            for s in sorted(own, key=lambda section: section.citation)
-        )
-        parts.append(table(("section", "title", "regulations", "versions", "confidence"), rows))
+        parts.append(f"## {jurisdiction.name}\n\n{len(own)} sections have a file ({_sure(own)}), {count} regulations.\n")
+        if ledger.outline is not None:
+            read = f" Read at <{ledger.outline.source}>." if ledger.outline.source else ""
+            parts.append(f"The list of sections itself is {ledger.outline.listing}.{read} {ledger.outline.note}\n")
+        parts.append(_shares("part", ((": ".join(part for part in group if part), items) for group, items in ledger.groups.items())))
+        rows = (_section_row(item.entry, MEANINGS[item.status]) for item in ledger.accounts if item.entry is not None)
+        parts.append("### Sections with a file\n\n" + table(("section", "title", "regulations", "versions", "confidence", "stands"), rows))
+        rest = ((item.section, item.heading, MEANINGS[item.status], item.why) for item in ledger.accounts if item.why)
+        parts.append("### What is not encoded, and why\n\n" + table(("section", "heading", "stands", "why"), rest))
     return "\n".join(parts)
+
+
+_ABOUT_CODES = """Every section of the chapters that matter is accounted for: encoded, partly encoded (what is missing), not for a driving ADS
+(why), or not expressible (why); `regdb coverage` prints the same. How sure we are of a section: *verified* (two sources seen and
+compared), *seen* (one), *recalled* (none: no number of such a section has been verified). A section without a file is not shown as law.
+"""
+
+
+def _shares(head: str, groups: Iterable[tuple[str, tuple[Account, ...]]]) -> str:
+    """How many sections stand how, in each group."""
+    counted = [(name, count(items), len(items)) for name, items in groups]
+    rows = ((name, *(by[status] or "" for status in STATUSES), total) for name, by, total in counted)
+    return table((head, *(MEANINGS[status] for status in STATUSES), "all"), rows)
+
+
+def _sure(sections: list[SectionEntry]) -> str:
+    sure = Counter(section.doc.source.confidence for section in sections)
+    return ", ".join(f"{sure[level]} {level}" for level in ("verified", "seen", "recalled") if sure[level])
+
+
+def _section_row(section: SectionEntry, stands: str) -> tuple[object, ...]:
+    rules = len({entry.doc.id for version in section.versions for entry in version.regulations})
+    return section.doc.section, section.doc.title, rules, len(section.versions), section.doc.source.confidence, stands
 
 
 def lint_rules() -> str:
-    """Every rule with its page."""
-    from regdb_compiler.lint.catalogue import CATALOGUE
+    """Every rule with its page, and what reading and resolving report."""
+    from regdb_compiler.lint.catalogue import FAMILIES, Listed, catalogue
+    from regdb_compiler.lint.registry import shipped_rules
 
-    parts = ["# Lint rules\n"]
-    rows = ((f"[{page.code}](#{page.code.lower()}-{page.name})", page.name, page.level, page.summary) for page in CATALOGUE)
-    parts.append(table(("code", "name", "level", "what it finds"), rows))
-    parts += [f"## {page.code} {page.name}\n\n{page.text.strip()}\n" for page in CATALOGUE]
-    return "\n".join(parts)
+    items = catalogue(shipped_rules())
+    parts = ["# Lint rules\n", f"{len(items)} things that `regdb lint` can find. `regdb rule <code>` shows a page in the terminal.\n"]
+    for family, about in FAMILIES.items():
+        own = [item for item in items if item.code.startswith(family)]
+        rows = (
+            (f"[{item.code}](#{item.code.lower()}-{item.name})", item.name, item.level, item.page.fix_kind, item.page.summary) for item in own
+        )
+        parts.append(f"## {family}: {about}\n\n" + table(("code", "name", "level", "fix", "what it finds"), rows))
+
+    def page(item: Listed) -> str:
+        lines = [f"### {item.code} {item.name}", f"{item.page.summary} ({item.level})", item.page.why]
+        lines += [f"{title}:\n\n```yaml\n{text}\n```" for title, text in (("Fails", item.page.fails), ("Passes", item.page.passes)) if text]
+        lines += [f"Fix ({item.page.fix_kind}): {item.page.fix or 'see the finding'}"] if item.page.fix_kind else []
+        return "\n\n".join(line for line in lines if line) + "\n"
+
+    return "\n".join([*parts, *map(page, items)])
 
 
 GENERATED: dict[str, Callable[[], str]] = {

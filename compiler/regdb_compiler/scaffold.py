@@ -48,7 +48,8 @@ def section_scaffold(corpus: Corpus, citation: str, title: str, topic: str) -> S
         raise FrontError(f"{path} is there already")
     fact = next((item.name for item in corpus.vocabulary if item.kind == "boolean" and item.source == "perception"), "sign.stop")
     text = _render(
-        "section.yaml.j2", section=cited.section, title=json.dumps(title or f"Section {cited.section}", ensure_ascii=False), location="Division, Chapter, Article",
+        "section.yaml.j2", section=cited.section, title=json.dumps(title or f"Section {cited.section}", ensure_ascii=False),
+        location="Division, Chapter, Article",
         topic=topic or f"section-{re.sub(r'[^0-9a-z]+', '-', cited.section)}", today=datetime.date.today().isoformat(),
         effective=FIRST_DAY, fact=fact, example=fact, current="lane_following", next="lane_following",
         current_state="lane_following.go_straight", next_state="lane_following.go_straight",
@@ -76,8 +77,8 @@ def rule_scaffold(folder: Path, name: str, code: str) -> Scaffold:
     """A lint rule's module in a folder. Raises FrontError for a name or code of the wrong form, or a file that is there."""
     if not re.fullmatch(r"[a-z]+(?:-[a-z]+)*", name):
         raise FrontError(f"a lint rule is named for its offence in small words: quote-too-long, not {name!r}")
-    if not re.fullmatch(r"R\d{3}", code):
-        raise FrontError(f"a rule's code is R and three digits, not {code!r}")
+    if not re.fullmatch(r"[A-Z]{1,4}\d{3,4}", code):
+        raise FrontError(f"a rule's code is capitals and digits, such as R931 or ACME101, not {code!r}")
     path = folder / f"{name.replace('-', '_')}.py"
     if path.exists():
         raise FrontError(f"{path} is there already")

@@ -33,12 +33,19 @@ def command(
     else:
         raise FrontError(f"`regdb new` makes a section, a jurisdiction or a rule, not {kind!r}")
     _write(scaffold)
-    typer.echo(f"{'added to' if scaffold.append else 'wrote'} {scaffold.path}")
+    path = _from_here(scaffold.path)
+    typer.echo(f"{'added to' if scaffold.append else 'wrote'} {path}")
     if kind == "section":
-        typer.echo(f"next: edit it, then  regdb lint {scaffold.path}  and  regdb test {scaffold.path}")
+        typer.echo(f"next: edit it, then  regdb lint {path}  and  regdb test {path}")
     elif kind == "jurisdiction":
-        folder = scaffold.path.parent / words.lower().replace(" ", "_")
+        folder = path.parent / words.lower().replace(" ", "_")
         typer.echo(f"next: put its sections into {folder}/")
+
+
+def _from_here(path: Path) -> Path:
+    """The path as somebody in this folder would type it."""
+    here = Path.cwd()
+    return path.relative_to(here) if path.is_relative_to(here) else path
 
 
 def _write(scaffold: Scaffold) -> None:
