@@ -84,7 +84,7 @@ def _complete_test(fields: dict[str, Any], vocabulary: Vocabulary, machine: Stat
     _choices(fields, "scene", {"type": "object", "properties": {**base, **scene}, "additionalProperties": False})
     plan = {fact.name: fact_schema(fact) for fact in _sorted(vocabulary)}
     plan |= {fact.name.removeprefix("plan."): fact_schema(fact) for fact in _sorted(vocabulary) if fact.name.startswith("plan.")}
-    states = {"enum": sorted(machine.names)}
+    states = _one_or_more(sorted(machine.names))
     _choices(fields, "plan", {"type": "object", "properties": {"current": states, "next": states, **plan}, "additionalProperties": False})
     _choices(fields, "in", {"enum": sorted({*(item.id for item in tree), *(item.code for item in tree if item.code)})})
 
