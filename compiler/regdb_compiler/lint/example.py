@@ -3,8 +3,10 @@
 An example is a YAML mapping. Its keys go where they belong: `section`, `title`, `location`, `topic` and `source` to the section,
 `text`, `delegates`, `definitions` and `regulations` to its version, the rest to its regulation. `regulations` lists several,
 `versions` several versions; `facts` are declared besides, `cases` stand in the cases folder, `outline` lists the state's
-sections, `local` is a regulation of the city, `path` is the file's path and `file` its whole text, `append` is put at the file's end as it stands. null takes a field away.
+sections, `local` is a regulation of the city, `path` is the file's path and `file` its whole text, `append` is put at the
+file's end as it stands. null takes a field away.
 `texts` are attached as official text: section -> its words, or [the words that were accepted, the words attached since].
+`interpretations` are profiles by name, whose other fields are filled in.
 """
 
 from __future__ import annotations
@@ -28,7 +30,7 @@ from regdb_compiler.official.shelf import Shelf, accept, attach, write_shelf
 WORLD = Path(__file__).parent / "example_world"
 SECTION_KEYS = ("section", "title", "location", "topic", "source")
 VERSION_KEYS = ("text", "note", "enacted_by", "omitted", "definitions", "delegates")
-OWN_KEYS = ("regulations", "versions", "facts", "cases", "outline", "local", "path", "file", "append", "texts")
+OWN_KEYS = ("regulations", "versions", "facts", "cases", "outline", "local", "path", "file", "append", "texts", "interpretations")
 Example = Mapping[str, Any]
 
 
@@ -46,6 +48,9 @@ def write_example(example: Example, folder: Path) -> Path:
     shutil.copytree(WORLD, codes, dirs_exist_ok=True)
     if "facts" in example:
         _dump(codes / "vocabulary" / "more.yaml", {"facts": example["facts"]})
+    for name, fields in example.get("interpretations", {}).items():
+        blank = {"interpretation": name, "title": "A profile", "source": {"checked": "2026-01-02", "confidence": "recalled"}}
+        _dump(codes / "interpretations" / f"{name}.yaml", {**blank, **fields})
     if "texts" in example:
         _attach(folder / "texts", example["texts"])
     if "cases" in example:
