@@ -9,7 +9,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from typing import Any
 
-from regdb.schema import TABLES, USER_VERSION
+from regdb.schema import MAJOR, SINCE_MINOR, TABLES
 
 _META, _OWN_KEY = "regdb_meta", "content_hash"
 
@@ -30,8 +30,9 @@ class Table:
 
 
 def read_tables(connection: sqlite3.Connection) -> dict[str, Table]:
-    """Every table of the schema. Raises sqlite3.Error where one is missing or unreadable."""
-    return {name: _read(connection, name) for name in TABLES}
+    """Every table of the schema that a file of its version has. Raises sqlite3.Error where one is missing or unreadable."""
+    minor = connection.execute("PRAGMA user_version").fetchone()[0] % 1000
+    return {name: _read(connection, name) for name in TABLES if SINCE_MINOR.get(name, 0) <= minor}
 
 
 def _read(connection: sqlite3.Connection, name: str) -> Table:
@@ -47,11 +48,11 @@ def _read(connection: sqlite3.Connection, name: str) -> Table:
 
 
 def hash_tables(tables: Mapping[str, Table]) -> str:
-    """Hex SHA-256 over every table and column by name: texts joined by NUL, other columns as JSON with shortest floats.
+    """Hex SHA-256 over the major version and every table and column by name: texts joined by NUL, others as JSON with shortest floats.
 
     The hash itself (in `regdb_meta`) is left out by `read_tables`; search tables, views and indexes are derived and do not count.
     """
-    digest = hashlib.sha256(f"regdb {USER_VERSION}\n".encode())
+    digest = hashlib.sha256(f"regdb {MAJOR * 1000}\n".encode())
     for name, table in tables.items():
         for column, values in table.columns.items():
             kind, content = _content(values)

@@ -3,7 +3,7 @@
 APPLICATION_ID = 0x52474442
 """SQLite's application_id: "RGDB"."""
 
-MAJOR, MINOR = 1, 0
+MAJOR, MINOR = 1, 1
 """Schema version. A reader refuses another major; a minor only adds."""
 
 USER_VERSION = MAJOR * 1000 + MINOR
@@ -107,8 +107,20 @@ TABLES: dict[str, tuple[str, ...]] = {
         "regulation INTEGER NOT NULL REFERENCES regulation(key)", integer("position"), text("target"),
         "kind TEXT NOT NULL CHECK (kind IN ('exception_to', 'overrides'))", "PRIMARY KEY (regulation, position)",
     ),
+    "interpretation": (
+        "name TEXT PRIMARY KEY", text("title"), text("meaning"), text("source_url"), text("source_also"), text("checked"),
+        text("confidence"), text("note"),
+    ),
+    "interpretation_rule": (
+        "interpretation TEXT NOT NULL REFERENCES interpretation(name)", "fact TEXT NOT NULL REFERENCES fact(name)", text("formula"),
+        "true_when TEXT NOT NULL CHECK (true_when IN ('unsafe', 'safe'))", text("parameters"), text("because"), text("source"),
+        "PRIMARY KEY (interpretation, fact)",
+    ),
 }  # fmt: skip
 """Table -> column and constraint clauses. JSON stands in text columns; dates are ISO text, NULL where open."""
+
+SINCE_MINOR = {"interpretation": 1, "interpretation_rule": 1}
+"""The minor version that brought a table; all others were there from the first. A file of an earlier minor lacks it."""
 
 INDEXES = {
     "regulation_by_id": "regulation (id)",

@@ -40,12 +40,14 @@ UNITS: dict[str, Unit] = {
         Unit("lb", "mass", Fraction(45359237, 100000000)),
         Unit("deg", "angle", _DEGREE),
         Unit("%", "ratio", Fraction(1, 100)),
+        Unit("m/s2", "acceleration", Fraction(1)),
+        Unit("ft/s2", "acceleration", _FOOT),
         Unit("", "number", Fraction(1)),
     )
 }
 """Every unit by its symbol; the empty symbol is a bare number (counts)."""
 
-SI_SYMBOL = {"speed": "m/s", "length": "m", "duration": "s", "mass": "kg", "angle": "deg", "ratio": "", "number": ""}
+SI_SYMBOL = {"speed": "m/s", "length": "m", "duration": "s", "mass": "kg", "angle": "deg", "acceleration": "m/s2", "ratio": "", "number": ""}
 
 _ALIASES = {
     "feet": "ft", "foot": "ft", "inch": "in", "inches": "in", "mile": "mi", "miles": "mi", "kph": "km/h", "kmh": "km/h",

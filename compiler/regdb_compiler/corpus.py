@@ -14,7 +14,9 @@ from regdb.vocabulary import Fact, Vocabulary
 from regdb_compiler import documents
 from regdb_compiler.diagnostics import Diagnostic, Place
 from regdb_compiler.entries import CaseEntry, OutlineEntry, RegulationEntry, SectionEntry, VersionEntry
+from regdb_compiler.interpretation_documents import InterpretationFile
 from regdb_compiler.parse import parse_document
+from regdb_compiler.read_interpretations import InterpretationEntry, read_interpretation
 from regdb_compiler.read_vocabulary import jurisdictions_of, read_attributes, read_fact, read_jurisdictions, read_states
 from regdb_compiler.source import Mapping as MappingNode
 from regdb_compiler.source import Sequence as SequenceNode
@@ -44,6 +46,7 @@ class Corpus:
     unread: frozenset[str] = frozenset()
     added: tuple[Path, ...] = ()
     outlines: tuple[OutlineEntry, ...] = ()
+    interpretations: tuple[InterpretationEntry, ...] = ()
 
     @property
     def has_language(self) -> bool:
@@ -121,9 +124,10 @@ def read_corpus(codes: Path, added: Sequence[Path] | None = None) -> Corpus:
         cases += _read_cases(reader, folder, jurisdiction)
         outlines += _read_outline(reader, folder, jurisdiction)
     sections = _without_duplicates(sections, reader.problems)
+    interpretations = _read_interpretations(reader, vocabulary)
     return Corpus(
         codes, reader.files, vocabulary, machine, tree, tuple(sections), tuple(cases), places, tuple(reader.problems),
-        frozenset(reader.unread), reader.added, tuple(outlines),
+        frozenset(reader.unread), reader.added, tuple(outlines), interpretations,
     )  # fmt: skip
 
 
@@ -278,6 +282,25 @@ def _read_outline(reader: _Reader, folder: Path, jurisdiction: Jurisdiction) -> 
     doc, problems = parse_document(documents.Outline, file)
     reader.problems += problems
     return [OutlineEntry(doc, file.root, file, jurisdiction)] if doc is not None and isinstance(file.root, MappingNode) else []
+
+
+def _read_interpretations(reader: _Reader, vocabulary: Vocabulary) -> tuple[InterpretationEntry, ...]:
+    """Every profile by name; none where there is no vocabulary, since all facts would be missing."""
+    found: dict[str, InterpretationEntry] = {}
+    for path in (path for folder in reader.folders for path in sorted((folder / "interpretations").glob("*.yaml"))):
+        file = reader.read(path)
+        doc, problems = parse_document(InterpretationFile, file)
+        reader.problems += problems
+        if doc is None or not len(vocabulary):
+            continue
+        entry, problems = read_interpretation(doc, file, vocabulary)
+        reader.problems += problems
+        first = found.setdefault(entry.profile.name, entry)
+        if first is not entry:
+            related = ((first.place("interpretation"), "first declared here"),)
+            message = f"interpretation `{entry.profile.name}` is declared twice"
+            reader.problems.append(Diagnostic("R450", "bad-interpretation", "error", message, entry.place("interpretation"), related=related))
+    return tuple(found[name] for name in sorted(found))
 
 
 def _without_duplicates(sections: Iterable[SectionEntry], problems: list[Diagnostic]) -> list[SectionEntry]:

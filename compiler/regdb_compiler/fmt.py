@@ -15,6 +15,7 @@ from ruamel.yaml.error import YAMLError
 from ruamel.yaml.resolver import VersionedResolver
 
 from regdb_compiler import documents
+from regdb_compiler.interpretation_documents import InterpretationFile
 from regdb_compiler.parse import inner_model, to_data
 from regdb_compiler.parse_condition import read_raw
 from regdb_compiler.source import parse_text
@@ -172,6 +173,7 @@ FORMS: tuple[tuple[Callable[[tuple[str, ...]], bool], type[BaseModel]], ...] = (
     (lambda parts: parts == ("jurisdictions.yaml",), documents.JurisdictionsFile),
     (lambda parts: parts == ("states.yaml",), documents.StatesFile),
     (lambda parts: len(parts) == 2 and parts[0] == "vocabulary", documents.VocabularyFile),
+    (lambda parts: len(parts) == 2 and parts[0] == "interpretations", InterpretationFile),
     (lambda parts: len(parts) == 3 and parts[1] == "cases", documents.Cases),
     (lambda parts: len(parts) == 2 and parts[1] == "outline.yaml", documents.Outline),
     (lambda parts: len(parts) == 2, documents.Section),

@@ -20,6 +20,7 @@ _TABLES = (
     ("attribute", "SELECT name FROM attribute"),
     ("definition", "SELECT DISTINCT name FROM definition"),
     ("jurisdiction", "SELECT id FROM jurisdiction UNION SELECT code FROM jurisdiction WHERE code <> ''"),
+    ("interpretation", "SELECT name FROM interpretation"),
     ("topic", "SELECT DISTINCT topic FROM section UNION SELECT DISTINCT topic FROM regulation"),
 )
 NEAR = 5
@@ -76,6 +77,13 @@ class Library:
             where = f" in {self.place}" if self.place else ""
             raise FrontError(f"there is no {text!r}{where}{hint}")
         return found
+
+    def interpretation(self, name: str) -> Found:
+        """The profile of this name. Raises FrontError with those there are."""
+        names = self.column("SELECT name FROM interpretation ORDER BY name")
+        if name not in names:
+            raise FrontError(f"there is no interpretation {name!r}; there are: {', '.join(names) or 'none'}")
+        return Found("interpretation", (name,))
 
     def near(self, text: str) -> tuple[str, ...]:
         """Names most like the words, best first."""

@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 from typing import Any
 
+from regdb.interpretation import FORMULAS
 from regdb_compiler.emit.table import read_lines, typed
 from regdb_compiler.library import Found, Library
 
@@ -177,6 +178,24 @@ def _one_state(library: Library, name: str) -> Data:
     return {**_row(library, "state", "id", name), "next": after, "previous": before, "regulations": rules}
 
 
+def _interpretation(library: Library, name: str) -> Data:
+    """A profile with its rules, each with what its formula measures and the regulations that read its fact."""
+    columns = ("fact", "formula", "true_when", "parameters", "because", "source")
+    rows = library.connection.execute(
+        f"SELECT {', '.join(columns)} FROM interpretation_rule WHERE interpretation = ? ORDER BY fact", (name,)
+    )
+    rules = [dict(zip(columns, row, strict=True)) for row in rows]
+    for rule in rules:
+        formula = FORMULAS.get(rule["formula"])
+        rule["parameters"] = json.loads(rule["parameters"])
+        rule["formula_meaning"] = formula.meaning if formula else ""
+        rule["measures"] = [f"{measure} ({dimension})" for measure, dimension in formula.measures.items()] if formula else []
+        rule["read_by"] = _fact(library, rule["fact"])["read_by"]
+    data = _row(library, "interpretation", "name", name)
+    return {**data, "source_also": json.loads(data["source_also"]), "rules": rules}
+
+
 _LANGUAGE = {
     "fact": _fact, "attribute": _attribute, "definition": _definition, "jurisdiction": _jurisdiction, "topic": _topic, "state": _state,
+    "interpretation": _interpretation,
 }  # fmt: skip

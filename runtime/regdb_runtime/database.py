@@ -12,6 +12,7 @@ from datetime import date
 from pathlib import Path
 
 from regdb.content_hash import hash_tables, read_tables, stored_hash
+from regdb.interpretation import Interpretation
 from regdb.jurisdiction import JurisdictionTree
 from regdb.regulation import Regulation
 from regdb.schema import APPLICATION_ID, MAJOR
@@ -21,7 +22,7 @@ from regdb.vocabulary import Vocabulary
 from regdb_runtime.errors import DatabaseDamaged, DatabaseError, NotADatabase, VersionRefused
 from regdb_runtime.index.slots import PreparedScene
 from regdb_runtime.legality import BITMAPS_BEYOND, Calendar, Day, View
-from regdb_runtime.rows import check_defeat, read_machine, read_meta, read_regulations, read_tree, read_vocabulary
+from regdb_runtime.rows import check_defeat, read_interpretations, read_machine, read_meta, read_regulations, read_tree, read_vocabulary
 
 _MAGIC = b"SQLite format 3\x00"
 _Stamp = tuple[int, int, int]
@@ -45,10 +46,12 @@ class RegulationDatabase:
     def __init__(
         self, vocabulary: Vocabulary, machine: StateMachine, tree: JurisdictionTree, regulations: Iterable[Regulation],
         meta: Mapping[str, str] | None = None, path: Path | None = None, threshold: int = BITMAPS_BEYOND,
+        interpretations: Mapping[str, Interpretation] | None = None,
     ) -> None:  # fmt: skip
         self.vocabulary, self.machine, self.tree = vocabulary, machine, tree
         self.regulations = tuple(regulations)
         self.meta = dict(meta or {})
+        self.interpretations = dict(interpretations or {})
         self.path = path
         check_defeat(self.regulations)
         self._stamp: _Stamp | None = None
@@ -68,7 +71,7 @@ class RegulationDatabase:
                 raise DatabaseDamaged(f"{file} has been altered since it was compiled: its content hash does not match; compile it again")
             vocabulary = read_vocabulary(tables)
             machine, tree = read_machine(tables), read_tree(tables)
-            found = cls(vocabulary, machine, tree, read_regulations(tables, vocabulary), meta, file)
+            found = cls(vocabulary, machine, tree, read_regulations(tables, vocabulary), meta, file, interpretations=read_interpretations(tables))
         found._stamp = stamp
         return found
 

@@ -10,6 +10,7 @@ from typing import Any, TypeVar
 
 from regdb.condition import TRUE
 from regdb.content_hash import Table
+from regdb.interpretation import FORMULAS, Decision, Interpretation, Parameter
 from regdb.jurisdiction import Jurisdiction, JurisdictionError, JurisdictionTree
 from regdb.regulation import Limit, Regulation
 from regdb.states import State, StateMachine, SuperState
@@ -23,6 +24,8 @@ _FACT = (
 )  # fmt: skip
 _JURISDICTION = ("id", "name", "kind", "parent", "status", "code", "short", "long", "territory", "road_owners", "source")
 _SUPER_STATE = ("name", "meaning", "prompt", "next", "entry", "exit", "aliases", "from_anywhere", "initial")
+_INTERPRETATION = ("name", "title", "meaning", "source_url", "source_also", "checked", "confidence", "note")
+_DECISION = ("interpretation", "fact", "formula", "true_when", "parameters", "because", "source")
 _STATE = ("id", "super_state", "name", "meaning", "aliases", "extension", "prompt")
 
 
@@ -162,6 +165,22 @@ def _grouped(rows: Iterable[tuple[int, _Item]]) -> dict[int, tuple[_Item, ...]]:
     for key, item in rows:
         found.setdefault(key, []).append(item)
     return {key: tuple(items) for key, items in found.items()}
+
+
+def read_interpretations(tables: Tables) -> dict[str, Interpretation]:
+    """Every profile by name; none in a file of a schema that had none. Raises DatabaseDamaged for a formula that is not known."""
+    if "interpretation" not in tables:
+        return {}
+    decisions: dict[str, dict[str, Decision]] = {}
+    for profile, fact, formula, true_when, parameters, because, source in tables["interpretation_rule"].select(*_DECISION):
+        if formula and formula not in FORMULAS:
+            raise DatabaseDamaged(f"the interpretation {profile!r} decides {fact!r} by {formula!r}, a formula that this runtime lacks")
+        numbers = {name: Parameter(item["text"], float(item["si"])) for name, item in json.loads(parameters).items()}
+        decisions.setdefault(profile, {})[fact] = Decision(fact, formula, numbers, true_when, because, source)
+    return {
+        name: Interpretation(name, title, meaning, url, tuple(json.loads(also)), checked, confidence, note, decisions.get(name, {}))
+        for name, title, meaning, url, also, checked, confidence, note in tables["interpretation"].select(*_INTERPRETATION)
+    }
 
 
 @lru_cache(maxsize=4096)

@@ -69,7 +69,7 @@ def test_meta_says_sources_counts_licence_and_hash(connection: sqlite3.Connectio
     assert set(meta) == set(META_KEYS)
     assert meta["content_hash"] == content_hash(connection)
     assert meta["notice"].startswith("Not legal advice")
-    assert meta["schema_version"] == "1.0"
+    assert meta["schema_version"] == "1.1"
     assert meta["regulations"] == "5"
     sources = json.loads(meta["sources"])
     assert sources["cvc"] == {"jurisdiction": "State of California", "source": "https://leginfo.legislature.ca.gov", "checked": "2026-11-21"}

@@ -13,9 +13,12 @@ from regdb_compiler.commands.progress import working
 
 def command(
     name: Annotated[
-        list[str], typer.Argument(metavar="NAME...", help="cvc-21453-a, CVC 21453(b), 21453, a fact, a state, a topic.",
+        list[str] | None, typer.Argument(metavar="NAME...", help="cvc-21453-a, CVC 21453(b), 21453, a fact, a state, a topic.",
                                   autocompletion=completion.subjects)
-    ],
+    ] = None,
+    interpretation: Annotated[
+        str, typer.Option("--interpretation", metavar="NAME", help="A profile by which a runtime decides what has no number in law.")
+    ] = "",
     codes: Codes = None,
     on: On = "",
     in_: In = "",
@@ -26,11 +29,14 @@ def command(
     from regdb_compiler.library import Library
     from regdb_compiler.shown import shown
 
+    if bool(name) == bool(interpretation):
+        raise typer.BadParameter("name what to show, or a profile with --interpretation", param_hint="NAME")
     day = asked_day(on)
     with working("compiling"):
         path = database(codes)
     with Library(path, in_) as library:
-        data = shown(library, library.find(" ".join(name)), day.iso)
+        found = library.interpretation(interpretation) if interpretation else library.find(" ".join(name or ()))
+        data = shown(library, found, day.iso)
     if format_ is Format.json:
         typer.echo(json.dumps(data, indent=1, ensure_ascii=False))
     else:

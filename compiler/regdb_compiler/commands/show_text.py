@@ -198,7 +198,26 @@ def _state(sheet: Sheet, data: Data) -> None:
         sheet.field("Law to it", _many(item["regulations"]["next"]))
 
 
+def _interpretation(sheet: Sheet, data: Data) -> None:
+    sheet.heading(f"{data['name']}  (interpretation)  {data['title']}")
+    sheet.field("Not law", "a choice of design: how a runtime decides facts for which the law has no number")
+    sheet.field("Meaning", data["meaning"])
+    sheet.items("Source", [data["source_url"], *data["source_also"], f"checked {data['checked']}, {data['confidence']}"])
+    sheet.field("Note", data["note"])
+    for rule in data["rules"]:
+        sheet.gap()
+        when = "never decided: stays unknown" if not rule["formula"] else f"true when {rule['true_when']} by {rule['formula']}"
+        sheet.line(f"{rule['fact']}  {when}")
+        sheet.field("Formula", rule["formula_meaning"])
+        sheet.field("Parameters", ", ".join(f"{name} {item['text']}" for name, item in rule["parameters"].items()))
+        sheet.field("Measures", ", ".join(rule["measures"]))
+        sheet.field("Because", rule["because"])
+        sheet.field("Drawn from", rule["source"])
+        sheet.field("Read by", _many(rule["read_by"]))
+
+
 _WRITERS: dict[str, Callable[[Sheet, Data], None]] = {
     "regulation": _law, "section": _law, "fact": _fact, "attribute": _attribute, "definition": _definition,
     "jurisdiction": _jurisdiction, "topic": _topic, "state": _state,
+    "interpretation": _interpretation,
 }  # fmt: skip

@@ -17,6 +17,7 @@ from regdb.content_hash import content_hash
 from regdb.schema import APPLICATION_ID, INDEXES, SEARCH_COLUMNS, SEARCH_TABLE, TABLES, USER_VERSION, VIEWS
 from regdb_compiler.diagnostics import RegdbInputError
 from regdb_compiler.emit.in_place import folder_beside, move_in
+from regdb_compiler.emit.interpretation_rows import interpretation_rows
 from regdb_compiler.emit.language_rows import language_rows
 from regdb_compiler.emit.law_rows import law_rows
 from regdb_compiler.emit.meta import meta_rows
@@ -60,6 +61,7 @@ def collect(build: Build, day: Day | None = None) -> Tables:
     """The rows of every table, without the content hash, which only the finished tables have."""
     corpus, day = build.corpus, day or Day()
     tables: Tables = {**language_rows(corpus.tree, corpus.machine, corpus.vocabulary), **law_rows(build, day)}
+    tables.update(interpretation_rows(corpus.interpretations))
     tables["regdb_meta"] = meta_rows(build, tables, day)
     return {name: tables[name] for name in TABLES}
 

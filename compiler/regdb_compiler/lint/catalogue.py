@@ -19,6 +19,7 @@ from regdb_compiler.lint.rule import Rule
 from regdb_compiler.parse import PARSE_RULES
 from regdb_compiler.parse_condition import CONDITION_RULES
 from regdb_compiler.precedence import PRECEDENCE_RULES
+from regdb_compiler.read_interpretations import INTERPRETATION_RULES
 from regdb_compiler.read_vocabulary import VOCABULARY_RULES
 from regdb_compiler.resolve import RESOLVE_RULES
 from regdb_compiler.source import SOURCE_RULES
@@ -26,8 +27,8 @@ from regdb_compiler.suppression import SUPPRESSION_RULES
 from regdb_compiler.timeline import TIMELINE_RULES
 
 READING_RULES: tuple[RuleText, ...] = (
-    *SOURCE_RULES, *PARSE_RULES, *CONDITION_RULES, *CORPUS_RULES, *VOCABULARY_RULES, *DEFINITION_RULES, *RESOLVE_RULES,
-    *TIMELINE_RULES, *PRECEDENCE_RULES, *AUTHORITY_RULES, *LAW_TEST_RULES, *SUPPRESSION_RULES, *BASELINE_RULES,
+    *SOURCE_RULES, *PARSE_RULES, *CONDITION_RULES, *CORPUS_RULES, *VOCABULARY_RULES, *INTERPRETATION_RULES, *DEFINITION_RULES,
+    *RESOLVE_RULES, *TIMELINE_RULES, *PRECEDENCE_RULES, *AUTHORITY_RULES, *LAW_TEST_RULES, *SUPPRESSION_RULES, *BASELINE_RULES,
 )  # fmt: skip
 """What is no lint rule but reported beside them: it stops compiling, unless it is about comments, the baseline or a gap."""
 
@@ -75,7 +76,8 @@ def _reading(rule: RuleText) -> Listed:
 
 def _origin(rule: RuleText) -> str:
     tables = {"source": SOURCE_RULES, "parse": PARSE_RULES, "parse_condition": CONDITION_RULES, "corpus": CORPUS_RULES,
-              "read_vocabulary": VOCABULARY_RULES, "definitions": DEFINITION_RULES, "resolve": RESOLVE_RULES, "timeline": TIMELINE_RULES,
+              "read_vocabulary": VOCABULARY_RULES, "read_interpretations": INTERPRETATION_RULES, "definitions": DEFINITION_RULES,
+              "resolve": RESOLVE_RULES, "timeline": TIMELINE_RULES,
               "precedence": PRECEDENCE_RULES, "authority": AUTHORITY_RULES, "law_tests.read": LAW_TEST_RULES, "suppression": SUPPRESSION_RULES,
               "baseline": BASELINE_RULES}  # fmt: skip
     return "regdb_compiler." + next(name for name, table in tables.items() if rule in table)

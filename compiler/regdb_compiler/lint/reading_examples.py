@@ -26,6 +26,7 @@ READING_EXAMPLES: dict[str, str] = {
     "R402": "condition: {when: signal.color == blue}",
     "R403": "condition: {when: signal.color}",
     "R404": "states: {current: [lane_folowing]}",
+    "R450": "interpretations: {one: {facts: {childern.present: unknown}}}",
     "R405": "attributes: {top_speed: 25 mph}",
     "R406": "definitions: [{name: one, when: two}, {name: two, when: one}]",
     "R407": "definitions: [{name: one, when: sign.school}, {name: one, when: children.present}]",
