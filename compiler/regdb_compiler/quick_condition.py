@@ -14,7 +14,7 @@ from regdb_compiler.raw_condition import Raw, RawCompare, RawHas, RawJoin, RawKn
 _TOKENS = re.compile(
     r"\s*(?:(?P<DATE>\d{4}-\d{2}-\d{2})"
     r"|(?P<TIME>\d{1,2}:\d{2}(?::\d{2})?)"
-    r"|(?P<QUANTITY>\d+(?:\.\d+)?\s*(?:mph|km/h|m/s|ft|in(?!\s*\{)|mi|min|m|s|h|lb|kg|deg|%)(?![A-Za-z0-9_/]))"
+    r"|(?P<QUANTITY>\d+(?:\.\d+)?\s*(?:mph|km/h|m/s2|m/s|ft/s2|ft|in(?!\s*\{)|mi|min|m|s|h|lb|kg|deg|%)(?![A-Za-z0-9_/]))"
     r"|(?P<NUMBER>\d+(?:\.\d+)?)"
     r"|(?P<NAME>[A-Za-z_][A-Za-z0-9_]*(?:\.[A-Za-z0-9_]+)*)"
     r"|(?P<OPERATOR><=|>=|==|!=|<|>)"

@@ -9,7 +9,7 @@ import jsonschema
 import pytest
 import yaml
 from pydantic import BaseModel
-from regdb_compiler import documents
+from regdb_compiler import documents, interpretation_documents
 from regdb_compiler.commands.schema import NAMES
 from regdb_compiler.driver import Build
 from regdb_compiler.emit.field_meanings import MEANINGS
@@ -47,14 +47,14 @@ def _validator(small: Build, name: str) -> jsonschema.Draft202012Validator:
 
 
 def _kind(path: Path) -> str:
-    if path.parent.name in {"vocabulary", "cases"}:
-        return path.parent.name
+    if path.parent.name in {"vocabulary", "cases", "interpretations"}:
+        return path.parent.name.removesuffix("s") if path.parent.name == "interpretations" else path.parent.name
     return path.stem if path.stem in NAMES else "section"
 
 
 def test_every_file_that_compiles_is_valid(small: Build, small_codes: Path) -> None:
     paths = list(small_codes.rglob("*.yaml"))
-    assert {_kind(path) for path in paths} == {"section", "vocabulary", "states", "jurisdictions"}
+    assert {_kind(path) for path in paths} == {"section", "vocabulary", "states", "jurisdictions", "interpretation"}
     for path in paths:
         _validator(small, _kind(path)).validate(_as_editors_read(path.read_text("utf-8")))
 
@@ -98,7 +98,8 @@ def test_names_of_the_codes_are_offered_with_their_meaning(small: Build) -> None
 
 
 def test_every_field_is_described_and_no_description_is_left_over() -> None:
-    models = {name: item for name, item in vars(documents).items() if isinstance(item, type) and issubclass(item, BaseModel)}
+    declared = {**vars(documents), **vars(interpretation_documents)}
+    models = {name: item for name, item in declared.items() if isinstance(item, type) and issubclass(item, BaseModel)}
     del models["BaseModel"], models["Document"]
     assert set(MEANINGS) == set(models)
     for name, model in models.items():
@@ -117,7 +118,7 @@ def test_the_command_lists_prints_and_writes(small_codes: Path, tmp_path: Path, 
             main(["schema", *arguments, "--codes", str(small_codes)])
         return int(caught.value.code or 0), *capsys.readouterr()
 
-    assert run() == (0, "section\ncases\nvocabulary\nstates\njurisdictions\noutline\n", "")
+    assert run() == (0, "section\ncases\nvocabulary\nstates\njurisdictions\noutline\ninterpretation\n", "")
     code, out, _ = run("section")
     assert (code, json.loads(out)["title"]) == (0, "A section of a code")
     code, listed, _ = run("--write", str(tmp_path / "schema"))

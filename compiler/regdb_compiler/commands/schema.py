@@ -9,7 +9,7 @@ import typer
 from regdb.front import FrontError, codes_folder
 from regdb_compiler.commands.options import Codes
 
-NAMES = ("section", "cases", "vocabulary", "states", "jurisdictions", "outline")
+NAMES = ("section", "cases", "vocabulary", "states", "jurisdictions", "outline", "interpretation")
 """Kinds of files that have a schema."""
 
 _LISTED = ", ".join(NAMES)

@@ -167,6 +167,26 @@ MEANINGS: Mapping[str, Mapping[str, str]] = {
         "governs": "Territory and roads its law reaches.",
         "source": "Where its code is published.",
     },
+    "ParameterDocument": {
+        "value": "The number with its unit.",
+        "meaning": "What it stands for.",
+        "source": "Where it is published.",
+    },
+    "DecisionDocument": {
+        "formula": "The formula that decides the fact, or unknown: never decided.",
+        "true_when": "Whether the fact is true when the formula finds its quantity short (unsafe, the default) or not (safe).",
+        "parameters": "Numbers that go before the profile's own.",
+        "because": "Why the formula stands for the fact, in one sentence.",
+        "source": "Where that is drawn from.",
+    },
+    "InterpretationFile": {
+        "interpretation": "Its name, which is its file's.",
+        "title": "What it is called.",
+        "meaning": "What it is, and what it is for.",
+        "source": "What it is drawn from, when that was read, and how sure we are.",
+        "parameters": "Numbers with their units, by name.",
+        "facts": "How each fact is decided: a formula, or unknown.",
+    },
     "JurisdictionsFile": {"jurisdictions": "Jurisdictions by id."},
     "State": {
         "meaning": "What the vehicle does in it.",

@@ -14,6 +14,7 @@ from regdb.states import StateMachine
 from regdb.vocabulary import Fact, Vocabulary
 from regdb_compiler import documents
 from regdb_compiler.emit.field_meanings import MEANINGS
+from regdb_compiler.interpretation_documents import InterpretationFile
 
 VERSION = "1.0"
 """Version of the file format, part of every `$id`. A major change makes files invalid that were valid."""
@@ -25,18 +26,21 @@ MODELS: Mapping[str, type[BaseModel]] = {
     "states": documents.StatesFile,
     "jurisdictions": documents.JurisdictionsFile,
     "outline": documents.Outline,
+    "interpretation": InterpretationFile,
 }
 """Schema name -> the document it describes."""
 
 _TITLES = {
     "section": "A section of a code", "cases": "Cases of the law", "vocabulary": "A file of the vocabulary",
     "states": "The state machine", "jurisdictions": "The tree of jurisdictions",
-    "outline": "The outline of a code",
+    "outline": "The outline of a code", "interpretation": "An interpretation",
 }  # fmt: skip
 _SHORT_FORMS: Mapping[str, JsonSchemaValue] = {
     "_listed": {"type": "string", "description": "One item may stand without a list."},
     "_vagueness": {"type": "integer", "minimum": 0, "maximum": 5},
     "_headed": {"type": "string", "description": "The heading alone."},
+    "_decided": {"type": "string", "description": "The formula alone, or unknown."},
+    "_valued": {"type": "string", "description": "The number alone."},
     "_expectation": {"enum": ["legal", "illegal", "unknown"]},
 }
 """Validators of `documents` that also take a short form, and what that form looks like."""
