@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import datetime
 import json
+import textwrap
 import time
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
@@ -48,7 +49,7 @@ def command(
     if not sound:
         raise FrontError("the codes have errors, so nothing was compiled; `regdb lint` shows them")
     outputs = author_side("emit.outputs").write_outputs(build, out, None)
-    tell(f"   compile  {outputs.folder}: {', '.join(item.name for item in outputs.files)}")
+    tell(_wrapped(f"compile  {outputs.folder}: {', '.join(item.name for item in outputs.files)}", 3, 12))
     decided = list(_decide(build, outputs.folder / "regulations.sqlite"))
     wrong = [item for item in decided if not item.as_expected]
     if format_ == "json":
@@ -105,7 +106,11 @@ def _show(decided: list[Situation], tell: Callable[[str], None]) -> None:
             group = item.group
             tell(f"\n   {group}")
         tell(f"   {item.verdict.verdict.upper():<8} {item.name}" + ("" if item.as_expected else "   <- not what its case expects"))
-        tell(f"            {_because(item.verdict)}")
+        tell(_wrapped(_because(item.verdict), 12, 12))
+
+
+def _wrapped(text: str, indent: int, hanging: int) -> str:
+    return textwrap.fill(text, 80, initial_indent=" " * indent, subsequent_indent=" " * hanging)
 
 
 def _because(verdict: Any) -> str:
