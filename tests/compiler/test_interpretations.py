@@ -146,7 +146,9 @@ def test_a_formula_that_the_runtime_lacks_is_refused(small: Build, tmp_path: Pat
         RegulationDatabase.open(path)
 
 
-@pytest.mark.parametrize(("name", "value", "verdict"), [("statute_only", None, "unknown"), ("conservative", True, "illegal"), ("rss", True, "illegal")])
+@pytest.mark.parametrize(
+    ("name", "value", "verdict"), [("statute_only", None, "unknown"), ("conservative", True, "illegal"), ("rss", True, "illegal")]
+)
 def test_following_too_closely_by_each_profile(database: RegulationDatabase, name: str, value: bool | None, verdict: str) -> None:
     """One scene, one law; what differs is how the runtime decides the fact that the law leaves open."""
     profile = database.interpretations[name]
@@ -178,7 +180,11 @@ def test_a_profile_is_shown(codes: Path, own_cache: Path, capsys: pytest.Capture
 
 @pytest.mark.parametrize(
     ("arguments", "message"),
-    [(["--interpretation", "bold"], "there are: cautious"), ([], "name what to show"), (["22350", "--interpretation", "cautious"], "name what to show")],
+    [
+        (["--interpretation", "bold"], "there are: cautious"),
+        ([], "name what to show"),
+        (["22350", "--interpretation", "cautious"], "name what to show"),
+    ],
 )
 def test_what_cannot_be_shown(
     arguments: list[str], message: str, small_codes: Path, own_cache: Path, capsys: pytest.CaptureFixture[str]  # noqa: ARG001

@@ -133,7 +133,8 @@ def test_what_cannot_be_measured_is_refused(bad: float) -> None:
 
 def test_scene_and_plan_take_what_was_decided_and_nobody_told() -> None:
     facts = {name: Decision(name, "time_gap", {"least_time": Parameter("3 s", 3.0)}) for name in ("a.near", "b.near", "c.near", "plan.near")}
-    found = judge_all(Interpretation("p", "P", decisions=facts), dict.fromkeys(("a.near", "b.near", "plan.near"), {"rear_speed": 10.0, "gap": 5.0}))
+    measured = {name: {"rear_speed": 10.0, "gap": 5.0} for name in ("a.near", "b.near", "plan.near")}
+    found = judge_all(Interpretation("p", "P", decisions=facts), measured)
     assert [item.value for item in found] == [True, True, None, True]
     scene, plan = interpreted(Scene({"b.near": False}, frozenset(["map"])), Plan("x", "y"), found)
     assert scene == Scene({"a.near": True, "b.near": False}, frozenset(["map"]))

@@ -16,6 +16,8 @@ HISTORY = re.compile(
     r"(?:Added|Amended|Enacted|Repealed|Renumbered|Formerly|Section|Title|Heading|Subsec|Subdiv|Ord|New|Former)\b.*"
     r"(?:Stats\.|Ord\.|Ch\.|Eff\.|\u00a7|Initiative|Proposition)", re.DOTALL,
 )  # fmt: skip
+_DIVISION = re.compile(r"(?:Division|Title|Part|Chapter|Article)\b", re.IGNORECASE)
+_STOPS = ".;:!?)]>\"'\u201d\u2019*_=-"
 LEAST_DIGITS = 3
 """Digits that make a bare number at the beginning of a line a section's rather than a list's."""
 
@@ -41,9 +43,10 @@ def read_plain(text: str, name: str = "") -> tuple[Passage, ...]:
 
 
 def _passages(lines: Iterable[str]) -> Iterator[Passage]:
-    number, body = "", list[str]()
+    number, body, before = "", list[str](), ""
     for line in lines:
-        head = head_of(line)
+        head = head_of(line) if _ends(before) else None
+        before = line.strip()
         if head is None:
             body.append(line)
             continue
@@ -52,6 +55,11 @@ def _passages(lines: Iterable[str]) -> Iterator[Passage]:
         number, body = head[0], [head[1]]
     if number:
         yield whole_passage(number, "", body)
+
+
+def _ends(line: str) -> bool:
+    """Whether a section may begin after this line: a number after `... as in Section`, wrapped there, begins none."""
+    return not line or line[-1] in _STOPS or line.isupper() or _DIVISION.match(line) is not None
 
 
 def whole_passage(number: str, heading: str, lines: Iterable[str], version: str = "", history: Iterable[str] = ()) -> Passage:
