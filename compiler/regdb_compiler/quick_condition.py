@@ -59,9 +59,7 @@ def _words(text: str) -> Iterator[Word]:
         kind = match.lastgroup or ""
         word = match[kind]
         at = match.end()
-        if kind == "NAME" and word in _KEYWORDS:
-            kind = word
-        elif kind == "MARK":
+        if (kind == "NAME" and word in _KEYWORDS) or kind == "MARK":
             kind = word
         yield Word(word, kind, at - len(word), at)
 

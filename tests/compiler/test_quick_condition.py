@@ -20,8 +20,10 @@ COMMON = (
     "lane.width > 36 in and x in {a}",
     "  spaces   ==  everywhere\n and more ",
 )
-PIECES = ("sign.stop", "and", "or", "not", "(", ")", "{", "}", "in", "within", "known", "==", "<", "=", "+", "-", "*", ",", "..", "25", "25 mph", "3 in",
-          "07:00", "2026-01-01", "red", "a.b", "&&", "25 mhp", "1.5ft", "in{", "%")  # fmt: skip
+PIECES = (
+    "sign.stop", "and", "or", "not", "(", ")", "{", "}", "in", "within", "known", "==", "<", "=", "+", "-", "*", ",", "..",
+    "25", "25 mph", "3 in", "07:00", "2026-01-01", "red", "a.b", "&&", "25 mhp", "1.5ft", "in{", "%",
+)  # fmt: skip
 
 
 @pytest.mark.parametrize("text", COMMON)
