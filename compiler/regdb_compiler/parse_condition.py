@@ -200,7 +200,7 @@ def _unit_problem(text: str, at: int) -> Problem | None:
     before, word = re.search(r"\d\s*\Z", text[:at]), re.match(r"[A-Za-z/]+", text[at:])
     if before is None or word is None or word[0] in {"and", "or", "in", "within", "not"}:
         return None
-    near = difflib.get_close_matches(word[0], [u for u in UNITS if u], 1, 0.4)
+    near = difflib.get_close_matches(word[0], [u for u in UNITS if u], 1, 0.6)
     hint = f"did you mean {near[0]}? " if near else ""
     known = ", ".join(u for u in UNITS if u)
     return Problem("R302", "unknown-unit", f"unknown unit `{word[0]}`", at, at + len(word[0]), f"{hint}units: {known}")
