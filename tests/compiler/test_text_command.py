@@ -188,6 +188,14 @@ def test_a_broken_index_is_said_in_one_sentence(text: Any, page: Any, codes: Pat
     assert caught.value.code == 2
 
 
+def test_an_index_that_names_files_elsewhere_is_refused(text: Any, page: Any, codes: Path) -> None:
+    text("attach", page("(a) Lorem."))
+    index = codes.parent / "texts" / "index.json"
+    index.write_text(index.read_text().replace("cvc/22350.txt", "../codes/states.yaml"))
+    assert "lies outside" in " ".join(text("forget", "22350", code=2).split())
+    assert (codes / "states.yaml").exists()
+
+
 @pytest.mark.parametrize("arguments", [["attach"], ["show"], ["accept"], ["attach", "none.html"], ["sing"], ["show", "nothing"]])
 def test_usage_errors(text: Any, arguments: list[str]) -> None:
     assert text(*arguments, code=2)

@@ -105,6 +105,9 @@ def read_shelf(folder: Path) -> Shelf:
         accepted = tuple(Accepted(**item) for item in data["accepted"])
     except (OSError, ValueError, KeyError, TypeError) as error:
         raise FrontError(f"{index} cannot be read: {error}") from error
+    for name in (*(item.file for item in texts), *(item.file for item in accepted)):
+        if Path(name).is_absolute() or ".." in Path(name).parts:
+            raise FrontError(f"{index} names {name}, which lies outside {folder}")
     return Shelf(folder, texts, accepted)
 
 
