@@ -4,12 +4,13 @@ VENV := .venv
 BIN := $(VENV)/bin
 READY := $(VENV)/.ready
 
-.PHONY: demo test check bench docs quick clean help
+.PHONY: demo test check law bench docs quick clean help
 
 help:
 	@echo "make demo    lint, test and compile the shipped codes, and decide the paper's situations"
 	@echo "make test    run every test"
-	@echo "make check   style, types, layers, regdb lint and regdb test on codes/"
+	@echo "make check   style, types, layers, and everything make law does"
+	@echo "make law     lint, form, tests, boundaries, ledger and mutation score of codes/"
 	@echo "make bench   measure, in ratios of one run, against the marks"
 	@echo "make docs    write the generated pages of docs/reference"
 
@@ -31,10 +32,17 @@ quick: $(READY)
 	$(BIN)/mypy
 	$(BIN)/lint-imports
 
-check: quick
+check: quick law
+
+law: $(READY)
 	$(BIN)/regdb lint --codes codes
 	$(BIN)/regdb fmt --check --codes codes
 	$(BIN)/regdb test --codes codes -q
+	$(BIN)/regdb test --codes codes --boundaries -q
+	@mkdir -p out
+	$(BIN)/regdb coverage --codes codes > out/coverage.txt || { cat out/coverage.txt; exit 1; }
+	$(BIN)/regdb test --codes codes --mutate --mutate-under 90 > out/mutation.txt || { cat out/mutation.txt; exit 1; }
+	@tail -n 1 out/mutation.txt
 
 bench: $(READY)
 	$(BIN)/python bench/run.py

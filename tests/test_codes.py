@@ -6,6 +6,9 @@ import pytest
 from regdb_compiler.driver import Build, build
 
 from regdb.condition import literals
+from regdb.meaning import decide, governing
+from regdb.situation import Situation, read_plan, read_scene
+from regdb.vocabulary import read_date
 
 CVC = (
     *map(str, range(21450, 21458)), "21460", "21460.5", *map(str, range(21650, 21653)), *map(str, range(21654, 21659)), "21703",
@@ -101,3 +104,15 @@ def test_table_two_s_successors_and_the_only_doors(law: Build) -> None:
                 assert state.name == door
                 assert other.name == machine.super_states[other.super_state].entry
         assert any(target.startswith("emergency_stop.") for target in state.next)
+
+
+@pytest.mark.parametrize(("without", "verdict"), [((), "legal"), (("cvc-21453-b-right",), "illegal")])
+def test_right_on_red_is_lawful_by_the_database_alone(law: Build, without: tuple[str, ...], verdict: str) -> None:
+    scene = read_scene(
+        {"like": "quiet", "signal.present": "true", "signal.color": "red", "signal.shape": "circular", "ego.stopped_at_line": "true"},
+        law.corpus.vocabulary,
+    )
+    plan = read_plan({"current": "stop", "next": "turn_right", "speed": "10 mph"}, law.corpus.vocabulary, law.corpus.machine)
+    rules = [rule for rule in law.regulations if rule.id not in without]
+    there = governing(rules, law.corpus.tree, "california", read_date("2026-03-02"))
+    assert decide(there, Situation(law.corpus.vocabulary, scene, plan)).verdict == verdict
