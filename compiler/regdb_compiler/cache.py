@@ -64,7 +64,7 @@ def _own_files() -> Iterator[str]:
 
     roots = (Path(__file__).parent, Path(regdb.__file__).parent)
     for root in roots:
-        for path in sorted([*root.glob("*.py"), *root.glob("*.lark"), *root.glob("emit/*.py")]):
+        for path in sorted([*root.glob("*.py"), *root.glob("*.lark"), *root.glob("emit/*.py"), *root.glob("documents/*.py")]):
             state = path.stat()
             yield f"{path.name} {state.st_size} {state.st_mtime_ns}\n"
 

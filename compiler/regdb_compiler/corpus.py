@@ -13,8 +13,8 @@ from regdb.states import StateMachine
 from regdb.vocabulary import Fact, Vocabulary
 from regdb_compiler import documents
 from regdb_compiler.diagnostics import Diagnostic, Place
+from regdb_compiler.documents.interpretation import InterpretationFile
 from regdb_compiler.entries import CaseEntry, OutlineEntry, RegulationEntry, SectionEntry, VersionEntry
-from regdb_compiler.interpretation_documents import InterpretationFile
 from regdb_compiler.parse import parse_document
 from regdb_compiler.read_interpretations import InterpretationEntry, read_interpretation
 from regdb_compiler.read_vocabulary import jurisdictions_of, read_attributes, read_fact, read_jurisdictions, read_states

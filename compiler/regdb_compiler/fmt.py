@@ -15,7 +15,7 @@ from ruamel.yaml.error import YAMLError
 from ruamel.yaml.resolver import VersionedResolver
 
 from regdb_compiler import documents
-from regdb_compiler.interpretation_documents import InterpretationFile
+from regdb_compiler.documents.interpretation import InterpretationFile
 from regdb_compiler.parse import inner_model, to_data
 from regdb_compiler.parse_condition import read_raw
 from regdb_compiler.source import parse_text

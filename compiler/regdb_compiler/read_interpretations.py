@@ -11,7 +11,7 @@ from regdb.interpretation import FORMULAS, Decision, Interpretation, Parameter
 from regdb.units import Quantity, UnitError, parse_quantity
 from regdb.vocabulary import Vocabulary
 from regdb_compiler.diagnostics import Diagnostic, Place
-from regdb_compiler.interpretation_documents import DecisionDocument, InterpretationFile
+from regdb_compiler.documents.interpretation import DecisionDocument, InterpretationFile
 from regdb_compiler.parse import place_at
 from regdb_compiler.source import Mapping as MappingNode
 from regdb_compiler.source import SourceFile

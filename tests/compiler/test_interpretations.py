@@ -10,10 +10,10 @@ from typing import Any
 
 import pytest
 import yaml
+from regdb_compiler.documents.interpretation import InterpretationFile
 from regdb_compiler.driver import Build, build
 from regdb_compiler.emit.to_sqlite import write_database
 from regdb_compiler.fmt import format_text, model_of
-from regdb_compiler.interpretation_documents import InterpretationFile
 from regdb_runtime.database import RegulationDatabase
 from regdb_runtime.errors import DatabaseDamaged
 from regdb_runtime.interpretation import interpreted, judge, judge_all

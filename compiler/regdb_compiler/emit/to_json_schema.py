@@ -13,8 +13,8 @@ from regdb.jurisdiction import JurisdictionTree
 from regdb.states import StateMachine
 from regdb.vocabulary import Fact, Vocabulary
 from regdb_compiler import documents
+from regdb_compiler.documents.interpretation import InterpretationFile
 from regdb_compiler.emit.field_meanings import MEANINGS
-from regdb_compiler.interpretation_documents import InterpretationFile
 
 VERSION = "1.0"
 """Version of the file format, part of every `$id`. A major change makes files invalid that were valid."""
@@ -36,7 +36,7 @@ _TITLES = {
     "outline": "The outline of a code", "interpretation": "An interpretation",
 }  # fmt: skip
 _SHORT_FORMS: Mapping[str, JsonSchemaValue] = {
-    "_listed": {"type": "string", "description": "One item may stand without a list."},
+    "listed": {"type": "string", "description": "One item may stand without a list."},
     "_vagueness": {"type": "integer", "minimum": 0, "maximum": 5},
     "_headed": {"type": "string", "description": "The heading alone."},
     "_decided": {"type": "string", "description": "The formula alone, or unknown."},

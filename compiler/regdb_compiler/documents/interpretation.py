@@ -6,7 +6,8 @@ from typing import Annotated, Any, Literal
 
 from pydantic import BeforeValidator, Field, StringConstraints
 
-from regdb_compiler.documents import Document, Source
+from regdb_compiler.documents.scalars import Document
+from regdb_compiler.documents.section import Source
 
 
 def _decided(value: Any) -> Any:
