@@ -7,6 +7,7 @@ import platform
 import re
 import sqlite3
 import sys
+import textwrap
 from collections.abc import Iterator
 from dataclasses import dataclass
 from importlib import metadata
@@ -38,7 +39,8 @@ def command() -> int:
     lines = list(examine())
     for line in lines:
         mark = {True: "ok", False: "MISSING", None: "-"}[line.fine]
-        sys.stdout.write(f"{mark:<8}{line.name:<22}{line.found}\n")
+        told = f"{mark:<8}{line.name:<22}{line.found}"
+        sys.stdout.write(textwrap.fill(told, 80, subsequent_indent=" " * 30, break_long_words=False, break_on_hyphens=False) + "\n")
     return 1 if any(line.fine is False for line in lines) else 0
 
 
