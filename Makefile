@@ -35,7 +35,7 @@ quick: $(READY)
 check: quick law
 
 law: $(READY)
-	$(BIN)/regdb lint --codes codes
+	$(BIN)/regdb lint --codes codes --format concise
 	$(BIN)/regdb fmt --check --codes codes
 	$(BIN)/regdb test --codes codes -q
 	$(BIN)/regdb test --codes codes --boundaries -q
