@@ -12,7 +12,7 @@ import shutil
 from collections.abc import Iterator
 from pathlib import Path
 
-from regdb_compiler.corpus import read_corpus
+from regdb_compiler.read_corpus import read_corpus
 
 from regdb.vocabulary import Fact, Vocabulary
 

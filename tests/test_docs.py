@@ -19,9 +19,9 @@ from pathlib import Path
 import pytest
 import yaml
 from doc_blocks import Block, Step, edited, in_place, is_shown, read_blocks, read_steps
-from regdb_compiler.corpus import read_corpus
 from regdb_compiler.lint.catalogue import FAMILIES
 from regdb_compiler.parse_condition import parse_condition
+from regdb_compiler.read_corpus import read_corpus
 
 from regdb.cli import COMMANDS
 from regdb.units import UNITS

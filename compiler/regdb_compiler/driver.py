@@ -9,11 +9,12 @@ from pathlib import Path
 
 from regdb.regulation import Regulation
 from regdb_compiler.authority import Authority
-from regdb_compiler.corpus import Corpus, read_corpus
+from regdb_compiler.corpus import Corpus
 from regdb_compiler.diagnostics import Diagnostic, in_order
 from regdb_compiler.law_tests.read import LawTest, check_tests, read_tests
 from regdb_compiler.lower import Row, lower
 from regdb_compiler.precedence import Targets, find_targets
+from regdb_compiler.read_corpus import read_corpus
 from regdb_compiler.resolve import Resolution, resolve
 from regdb_compiler.source import collector_paused
 from regdb_compiler.timeline import check_timeline

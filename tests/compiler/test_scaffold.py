@@ -4,8 +4,8 @@ import shutil
 from pathlib import Path
 
 import pytest
-from regdb_compiler.corpus import read_corpus
 from regdb_compiler.driver import build
+from regdb_compiler.read_corpus import read_corpus
 from regdb_compiler.scaffold import jurisdiction_scaffold, rule_scaffold, section_scaffold
 
 from regdb.front import FrontError

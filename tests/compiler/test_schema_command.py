@@ -131,7 +131,7 @@ def test_the_command_lists_prints_and_writes(small_codes: Path, tmp_path: Path, 
 
 
 def test_the_shipped_codes_are_valid(codes: Path) -> None:
-    from regdb_compiler.corpus import read_corpus
+    from regdb_compiler.read_corpus import read_corpus
 
     corpus = read_corpus(codes)
     validators = {

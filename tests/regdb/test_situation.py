@@ -8,7 +8,7 @@ from typing import Any
 import pytest
 from hypothesis import given
 from random_law import ASSUMED, VOCABULARY, known_facts
-from regdb_compiler.corpus import read_corpus
+from regdb_compiler.read_corpus import read_corpus
 
 from regdb.situation import Plan, Scene, SceneError, Situation, quiet_facts, read_plan, read_scene
 from regdb.states import StateMachine

@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
-from regdb_compiler.corpus import read_corpus
+from regdb_compiler.read_corpus import read_corpus
 
 from regdb.states import State, StateError, StateMachine, SuperState
 

@@ -41,6 +41,11 @@ def run(database: Path) -> Callable[..., Result]:
     return call
 
 
+def unwrapped(result: Result) -> str:
+    """What went to stderr on one line: where it wraps depends on how long the paths in it are."""
+    return " ".join(result.stderr.split())
+
+
 def facts(**values: str) -> list[str]:
     return [part for name, value in values.items() for part in ("--fact", f"{name}={value}")]
 
@@ -114,7 +119,7 @@ def test_all_problems_at_once(run: Callable[..., Result]) -> None:
     result = run(check, *facts(b0="maybe", b9="true"), "--fact", "b1", "--fact", "q0=3", "--in", "atlantis", "--format", "xml")
     assert result.exit_code == 2
     assert result.stdout == ""
-    said = result.stderr
+    said = unwrapped(result)
     for part in ("unknown format 'xml'", "'b1' is no fact", "no transition", "unknown jurisdiction 'atlantis'", "b0 is true, false",
                  "unknown fact 'b9'", "q0 takes a number with a unit"):  # fmt: skip
         assert part in said, part
@@ -135,15 +140,15 @@ def test_unreadable_files(run: Callable[..., Result], tmp_path: Path, name: str,
     path = tmp_path / name
     path.write_text(content)
     result = run(check, str(path))
-    assert (result.exit_code, said in result.stderr, "Traceback" in result.stderr) == (2, True, False)
+    assert (result.exit_code, said in unwrapped(result), "Traceback" in result.stderr) == (2, True, False)
 
 
 def test_missing_files(run: Callable[..., Result], tmp_path: Path) -> None:
-    assert "cannot be read" in run(check, str(tmp_path / "none.yaml")).stderr
+    assert "cannot be read" in unwrapped(run(check, str(tmp_path / "none.yaml")))
     app = typer.Typer()
     app.command()(check.command)
     result = CliRunner().invoke(app, ["--db", str(tmp_path / "none.sqlite")])
-    assert (result.exit_code, "cannot be read" in result.stderr) == (2, True)
+    assert (result.exit_code, "cannot be read" in unwrapped(result)) == (2, True)
 
 
 def test_yaml_without_its_library_says_what_to_type(run: Callable[..., Result], tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -159,4 +164,4 @@ def test_yaml_without_its_library_says_what_to_type(run: Callable[..., Result], 
     monkeypatch.setattr(builtins, "__import__", refuse)
     result = run(check, str(path))
     assert result.exit_code == 2
-    assert "pip install 'regdb[compiler]'" in result.stderr
+    assert "pip install 'regdb[compiler]'" in unwrapped(result)

@@ -13,8 +13,9 @@ from regdb.front import FrontError, codes_folder
 from regdb.jurisdiction import JurisdictionError, JurisdictionTree
 from regdb_compiler.commands import coverage_text
 from regdb_compiler.commands.options import Codes, Format, In, Output
-from regdb_compiler.corpus import Corpus, read_corpus
+from regdb_compiler.corpus import Corpus
 from regdb_compiler.ledger import STATUSES, Account, CodeLedger, count, ledgers, percent
+from regdb_compiler.read_corpus import read_corpus
 
 FORM = "urn:regdb:coverage:1.0"
 

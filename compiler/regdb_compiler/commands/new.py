@@ -6,8 +6,8 @@ from typing import Annotated
 import typer
 
 from regdb.front import FrontError, codes_folder
-from regdb_compiler.corpus import read_corpus
 from regdb_compiler.fixes import write_beside
+from regdb_compiler.read_corpus import read_corpus
 from regdb_compiler.scaffold import Scaffold, jurisdiction_scaffold, rule_scaffold, section_scaffold
 
 

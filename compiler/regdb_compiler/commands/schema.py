@@ -26,8 +26,8 @@ def command(
         typer.echo("\n".join(NAMES))
         return
     # Loaded here so that the shell's completion, which loads this module, need not wait for them.
-    from regdb_compiler.corpus import read_corpus
     from regdb_compiler.emit.to_json_schema import json_schema
+    from regdb_compiler.read_corpus import read_corpus
 
     corpus = read_corpus(codes_folder(codes))
     if write is None:

@@ -47,8 +47,8 @@ def command(
     format_: Output = Format.text,
 ) -> None:
     # Loaded here so that the shell's completion, which loads this module, need not wait for them.
-    from regdb_compiler.corpus import read_corpus
     from regdb_compiler.official.shelf import read_shelf, texts_folder
+    from regdb_compiler.read_corpus import read_corpus
 
     root = codes_folder(codes)
     folder = texts_folder(root, texts)

@@ -8,7 +8,6 @@ from typing import get_args
 
 from regdb_compiler.authority import AUTHORITY_RULES
 from regdb_compiler.baseline import BASELINE_RULES
-from regdb_compiler.corpus import CORPUS_RULES
 from regdb_compiler.definitions import DEFINITION_RULES
 from regdb_compiler.diagnostics import Level, RuleText
 from regdb_compiler.law_tests.read import LAW_TEST_RULES
@@ -19,6 +18,7 @@ from regdb_compiler.lint.rule import Rule
 from regdb_compiler.parse import PARSE_RULES
 from regdb_compiler.parse_condition import CONDITION_RULES
 from regdb_compiler.precedence import PRECEDENCE_RULES
+from regdb_compiler.read_corpus import CORPUS_RULES
 from regdb_compiler.read_interpretations import INTERPRETATION_RULES
 from regdb_compiler.read_vocabulary import VOCABULARY_RULES
 from regdb_compiler.resolve import RESOLVE_RULES

@@ -5,9 +5,11 @@ from __future__ import annotations
 import datetime
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Annotated
 
 import typer
 
+from regdb import completion
 from regdb.front import told
 from regdb.situation import Plan, Scene, SceneError, read_plan, read_scene
 from regdb_runtime.commands.scene_file import Question, add_facts, read_question
@@ -17,6 +19,22 @@ from regdb_runtime.legality import View, day_number
 from regdb_runtime.verdict import Verdict
 
 FORMATS = ("text", "json")
+
+SceneFile = Annotated[Path | None, typer.Argument(help="Scene file, YAML or JSON: scene, plan, in, on.")]
+Facts = Annotated[
+    list[str] | None,
+    typer.Option("--fact", "-f", help="A fact of scene or plan as name=value; repeatable.", autocompletion=completion.facts),
+]
+Current = Annotated[str, typer.Option(help="State the vehicle is in.", autocompletion=completion.states)]
+Following = Annotated[str, typer.Option("--next", help="State it would go to.", autocompletion=completion.states)]
+In = Annotated[
+    str, typer.Option("--in", help="Jurisdiction, or its code; default: the only state.", autocompletion=completion.jurisdictions)
+]
+On = Annotated[str, typer.Option("--on", help="Day as 2026-03-02; default: today.")]
+Db = Annotated[Path | None, typer.Option("--db", help="Compiled database; default: compiled from the codes.")]
+Codes = Annotated[Path | None, typer.Option("--codes", help="Folder of codes.")]
+Everything = Annotated[bool, typer.Option("--all", help="Show long lists whole.")]
+Form = Annotated[str, typer.Option("--format", help="text or json.")]
 
 
 @dataclass(frozen=True)
