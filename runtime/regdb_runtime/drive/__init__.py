@@ -1,0 +1,1 @@
+"""Drives: experiments in closed loop, their logs, figures and summaries."""

@@ -1,0 +1,1 @@
+"""Strategy: which states may follow, and what each would do here."""
