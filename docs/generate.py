@@ -20,6 +20,7 @@ from regdb_compiler.ledger import MEANINGS, STATUSES, Account, count, ledgers
 
 from regdb import schema
 from regdb.cli import COMMANDS
+from regdb.state_diagram import to_mermaid
 from regdb.vocabulary import Fact
 
 ROOT = Path(__file__).resolve().parents[1]
@@ -86,8 +87,7 @@ def states() -> str:
         parts.append(f"## {item.name}\n\n{item.meaning} Prompt: {item.prompt or '(none: it asks no model)'}\n")
         rows = ((f"`{s.name}`", s.meaning + (" (extension)" if s.extension else ""), ", ".join(f"`{n}`" for n in s.next)) for s in own)
         parts.append(table(("state", "meaning", "next"), rows))
-    edges = "\n".join(f"    {a} --> {b}" for a, item in machine.super_states.items() for b in item.next)
-    parts.append(f"```mermaid\nstateDiagram-v2\n    [*] --> {machine.initial}\n{edges}\n```\n")
+    parts.append(f"## The whole machine\n\nAs `regdb show states --format mermaid` writes it; a star marks an extension.\n\n```mermaid\n{to_mermaid(machine)}```\n")
     return "\n".join(parts)
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import difflib
+import json
 import re
 import sqlite3
 from collections.abc import Iterable
@@ -13,7 +14,10 @@ from pathlib import Path
 from regdb.citation import Citation, CitationError, parse_citation
 from regdb.front import FrontError
 from regdb.jurisdiction import Jurisdiction, JurisdictionError, JurisdictionTree
+from regdb.states import State, StateMachine, SuperState
 
+MACHINE = frozenset(("states", "state_machine"))
+"""Words for the state machine as a whole."""
 _BARE = re.compile(r"\d[\d.\-]*(?:\s*\([A-Za-z0-9]+\))*\s*\Z")
 _TABLES = (
     ("fact", "SELECT name FROM fact"),
@@ -152,7 +156,30 @@ class Library:
             if text in self.column(query):
                 return Found(kind, (text,))
         key = text.lower().replace(" ", "_").replace("-", "_")
+        if key in MACHINE:
+            return Found("machine", (key,))
         return Found("state", (key,)) if key in self._state_names else None
+
+    @cached_property
+    def machine(self) -> StateMachine:
+        """The state machine, states as declared."""
+        after: dict[str, list[str]] = {}
+        declared = "SELECT t.current, t.next FROM transition t JOIN state s ON s.id = t.next ORDER BY s.position"
+        for current, following in self.connection.execute(declared):
+            after.setdefault(current, []).append(following)
+        rows = self.connection.execute("SELECT id, super_state, name, meaning, prompt, aliases, extension FROM state ORDER BY position")
+        states = [
+            State(group, name, meaning, tuple(json.loads(aliases)), bool(extension), prompt, tuple(after.get(key, ())))
+            for key, group, name, meaning, prompt, aliases, extension in rows
+        ]
+        columns = "name, meaning, prompt, next, entry, exit, aliases, from_anywhere"
+        supers = [
+            SuperState(name, meaning, prompt, tuple(json.loads(following)), entry, leave, tuple(json.loads(aliases)), bool(anywhere))
+            for name, meaning, prompt, following, entry, leave, aliases, anywhere in self.connection.execute(
+                f"SELECT {columns} FROM super_state ORDER BY position"
+            )
+        ]
+        return StateMachine(supers, states, self.column("SELECT name FROM super_state WHERE initial ORDER BY position")[0])
 
     @cached_property
     def _state_names(self) -> tuple[str, ...]:

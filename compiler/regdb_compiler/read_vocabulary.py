@@ -162,13 +162,32 @@ def _state_problems(doc: documents.StatesFile, file: SourceFile) -> Iterator[Dia
         for role, door in (("entry", item.entry), ("exit", item.exit)):
             if door not in item.states:
                 yield bad(f"the {role} of `{name}`, `{door}`, is none of its states", "super_states", name, role)
-        reached = {item.entry, *(target for state in item.states.values() for target in state.next)}
-        for short, state in item.states.items():
-            for target in state.next:
-                if target not in item.states:
-                    yield bad(f"`{name}.{short}` leads to `{target}`, which is no state of `{name}`", "super_states", name, "states", short, "next")
-            if short not in reached:
-                yield bad(f"`{name}.{short}` cannot be reached", "super_states", name, "states", short)
+        lost = [(short, target) for short, state in item.states.items() for target in state.next if target not in item.states]
+        for short, target in lost:
+            yield bad(f"`{name}.{short}` leads to `{target}`, which is no state of `{name}`", "super_states", name, "states", short, "next")
+        if not lost and item.entry in item.states and item.exit in item.states:
+            yield from (bad(message, "super_states", name, "states", short) for short, message in _cut_off(name, item))
+
+
+def _cut_off(name: str, item: documents.SuperState) -> Iterator[tuple[str, str]]:
+    """States that cannot be reached from the entry, or from which the exit cannot be reached, each with the sentence that says so."""
+    reached = _reachable(item, [item.entry])
+    for short in item.states:
+        if short not in reached:
+            yield short, f"`{name}.{short}` cannot be reached from the entry, `{item.entry}`"
+        elif item.exit not in _reachable(item, [short]):
+            yield short, f"`{name}.{short}` has no way to the exit, `{item.exit}`"
+
+
+def _reachable(item: documents.SuperState, start: list[str]) -> set[str]:
+    """The states of a super-state that can be reached from these, themselves included."""
+    found: set[str] = set()
+    while start:
+        short = start.pop()
+        if short in item.states and short not in found:
+            found.add(short)
+            start += item.states[short].next
+    return found
 
 
 def _bad(file: SourceFile, code: str, rule: str, message: str, path: tuple[str, ...]) -> Diagnostic:

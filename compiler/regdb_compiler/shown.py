@@ -195,7 +195,17 @@ def _interpretation(library: Library, name: str) -> Data:
     return {**data, "source_also": json.loads(data["source_also"]), "rules": rules}
 
 
+def _machine(library: Library, _: str) -> Data:
+    """The state machine whole: super-states with their states and what may follow each."""
+    machine = library.machine
+    supers = [_super_state(library, name) for name in machine.super_states]
+    states = [
+        {"id": state.id, "meaning": state.meaning, "extension": state.extension, "next": list(state.next)} for state in machine.states.values()
+    ]
+    return {"initial": machine.initial, "super_states": supers, "states": states}
+
+
 _LANGUAGE = {
     "fact": _fact, "attribute": _attribute, "definition": _definition, "jurisdiction": _jurisdiction, "topic": _topic, "state": _state,
-    "interpretation": _interpretation,
+    "interpretation": _interpretation, "machine": _machine,
 }  # fmt: skip

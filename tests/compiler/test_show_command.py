@@ -108,3 +108,19 @@ def test_codes_with_errors_say_so(tmp_path: Path, own_cache: Path, capsys: pytes
         main(["show", "--codes", str(tmp_path / "codes"), "x"])
     assert caught.value.code == 2
     assert "run `regdb lint`" in capsys.readouterr().err
+
+
+def test_the_machine_whole(show: Any) -> None:
+    out = show("states")
+    assert "State machine, starting in lane_following" in out
+    assert "entered by go_straight, left by go_straight" in out
+    assert max(map(len, out.splitlines())) <= 80
+    data = json.loads(show("states", "--format", "json"))
+    assert data["shows"] == "machine"
+    assert [item["name"] for item in data["super_states"]][0] == data["initial"]
+
+
+def test_the_machine_as_a_diagram_and_nothing_else_as_one(show: Any) -> None:
+    assert show("states", "--format", "mermaid").startswith("stateDiagram-v2\n")
+    assert show("states", "--format", "dot").startswith("digraph states {\n")
+    assert "draws the state machine alone" in show("22350", "--format", "dot", code=2)

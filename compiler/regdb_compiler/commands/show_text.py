@@ -216,8 +216,27 @@ def _interpretation(sheet: Sheet, data: Data) -> None:
         sheet.field("Read by", _many(rule["read_by"]))
 
 
+def _machine(sheet: Sheet, data: Data) -> None:
+    """Super-states with their states, and what may follow each; emergencies, which follow every state, are said once."""
+    sheet.heading(f"State machine, starting in {data['initial']}")
+    everywhere = {state for item in data["super_states"] if item["from_anywhere"] for state in item["states"]}
+    states = {state["id"]: state for state in data["states"]}
+    for item in data["super_states"]:
+        reach = "entered from every state" if item["from_anywhere"] else f"entered by {item['entry']}, left by {item['exit']}"
+        sheet.heading(f"{item['name']}  ({reach})")
+        sheet.field("Meaning", item["meaning"])
+        sheet.field("Followed by", ", ".join(item["next"]))
+        for name in item["states"]:
+            state = states[name]
+            after = [other for other in state["next"] if other not in everywhere or item["from_anywhere"]]
+            own = [other.removeprefix(f"{item['name']}.") for other in after]
+            sheet.gap()
+            sheet.line(f"  {name.partition('.')[2]}" + ("  (extension of the paper's machine)" if state["extension"] else ""))
+            sheet.field("", f"-> {', '.join(own)}")
+
+
 _WRITERS: dict[str, Callable[[Sheet, Data], None]] = {
     "regulation": _law, "section": _law, "fact": _fact, "attribute": _attribute, "definition": _definition,
     "jurisdiction": _jurisdiction, "topic": _topic, "state": _state,
-    "interpretation": _interpretation,
+    "interpretation": _interpretation, "machine": _machine,
 }  # fmt: skip
