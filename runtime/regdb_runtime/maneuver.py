@@ -60,6 +60,9 @@ class Maneuver:
 
     `lane`: where the vehicle is now; `target_lane`: where it would go, None to stay. `passes`: the track to be passed. `junction`: the next one
     on the path within the horizon, None without. `refused`: why it cannot be done at all (`route`, `no_lane` …), empty when it can.
+    `via`: the micro-steps between the state now in force and `current`, all within one tick and without motion. `commits`: the manoeuvre is to
+    enter the junction, so it is judged as entering it (`plan.enters_intersection`) wherever its sampled horizon ends. `biases`: what the
+    strategist adds to the weighted cost, by name (`lane_needed`, `promise`, `switch`), never to legality.
     """
 
     current: str
@@ -74,3 +77,7 @@ class Maneuver:
     lead: str | None = None
     junction: Junction | None = None
     beyond: LanePath | None = field(default=None)
+    refused: str = ""
+    via: tuple[str, ...] = ()
+    commits: bool = False
+    biases: tuple[tuple[str, float], ...] = ()
