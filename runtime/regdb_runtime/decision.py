@@ -8,7 +8,7 @@ from typing import Literal
 
 from regdb_runtime.emergency import EmergencyReport
 from regdb_runtime.observation import TurnSignal
-from regdb_runtime.planning.trajectory import Trajectory
+from regdb_runtime.trajectory import Trajectory
 from regdb_runtime.verdict import Verdict
 
 StopPhase = Literal["", "approach", "held", "check", "released"]

@@ -6,7 +6,7 @@ from typing import Protocol
 
 from regdb_runtime.maps.road_map import RoadMap
 from regdb_runtime.observation import Footprint, Observation, TurnSignal
-from regdb_runtime.planning.trajectory import Trajectory
+from regdb_runtime.trajectory import Trajectory
 
 
 class World(Protocol):
