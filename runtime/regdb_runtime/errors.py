@@ -6,6 +6,7 @@ RegdbRuntimeError
 │   ├── VersionRefused     a schema of another major version
 │   └── DatabaseDamaged    truncated, altered, or with rows that mean nothing
 ├── RequestError           a place, date or state that is not there
+├── LogError               a file that is no log of a drive
 └── MissingExtra           an optional library is needed; says what to type
 """
 
@@ -32,6 +33,10 @@ class DatabaseDamaged(DatabaseError):  # noqa: N818
 
 class RequestError(RegdbRuntimeError, ValueError):
     """A question about a place, date or state that the database does not know."""
+
+
+class LogError(RegdbRuntimeError):
+    """A file that is no log of a drive, is cut off, or has another version."""
 
 
 class MissingExtra(RegdbRuntimeError):  # noqa: N818
