@@ -6,7 +6,10 @@ RegdbRuntimeError
 │   ├── VersionRefused     a schema of another major version
 │   └── DatabaseDamaged    truncated, altered, or with rows that mean nothing
 ├── RequestError           a place, date or state that is not there
+├── MapError               a map file that cannot be read
+├── NoRoute                no lanes lead from here to there
 ├── LogError               a file that is no log of a drive
+├── WorldError             a scene, or a record of perception, that cannot be built
 └── MissingExtra           an optional library is needed; says what to type
 """
 
@@ -37,6 +40,18 @@ class RequestError(RegdbRuntimeError, ValueError):
 
 class LogError(RegdbRuntimeError):
     """A file that is no log of a drive, is cut off, or has another version."""
+
+
+class MapError(RegdbRuntimeError, ValueError):
+    """A map or scenario file that cannot be read; names the file, the element and what is wrong with it."""
+
+
+class NoRoute(RegdbRuntimeError):  # noqa: N818
+    """No lanes that a vehicle may use lead from the one to the other."""
+
+
+class WorldError(RegdbRuntimeError, ValueError):
+    """A scene, or a record of perception, that no world can be built from; the message names the place in it."""
 
 
 class MissingExtra(RegdbRuntimeError):  # noqa: N818
