@@ -17,7 +17,7 @@ from regdb_runtime.decision import CandidateReport, CostTerms, Decision, Rejecti
 from regdb_runtime.drive.downtrack import Downtrack
 from regdb_runtime.emergency import EmergencyReport
 from regdb_runtime.observation import Footprint, Observation, Track
-from regdb_runtime.planning.trajectory import Trajectory
+from regdb_runtime.trajectory import Trajectory
 from regdb_runtime.verdict import Verdict
 
 RANKS = ("lawful", "unknown", "unlawful", "none")
