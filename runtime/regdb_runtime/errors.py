@@ -8,6 +8,7 @@ RegdbRuntimeError
 ├── RequestError           a place, date or state that is not there
 ├── MapError               a map file that cannot be read
 ├── NoRoute                no lanes lead from here to there
+├── OutsideDomain          a point that a reference path cannot place
 ├── LogError               a file that is no log of a drive
 ├── WorldError             a scene, or a record of perception, that cannot be built
 └── MissingExtra           an optional library is needed; says what to type
@@ -36,6 +37,14 @@ class DatabaseDamaged(DatabaseError):  # noqa: N818
 
 class RequestError(RegdbRuntimeError, ValueError):
     """A question about a place, date or state that the database does not know."""
+
+
+class OutsideDomain(RegdbRuntimeError, ValueError):  # noqa: N818
+    """A station beyond a path's ends, or an offset at or beyond its centre of curvature; the other of the two is None."""
+
+    def __init__(self, message: str, station: float | None = None, offset: float | None = None) -> None:
+        super().__init__(message)
+        self.station, self.offset = station, offset
 
 
 class LogError(RegdbRuntimeError):
