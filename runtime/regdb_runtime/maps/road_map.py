@@ -14,6 +14,8 @@ from regdb.vocabulary import Value
 
 Floats = NDArray[np.float64]
 Side = Literal["left", "right"]
+Control = Literal["signal", "stop", "all_way_stop", "yield", "none", "unknown"]
+"""How the entry into a junction is regulated; `none` only where the map says so, else `unknown`."""
 Turn = Literal["straight", "left", "right", "u_turn"]
 Marking = Literal["none", "dashed", "solid", "double_solid", "solid_dashed", "dashed_solid", "double_dashed", "curb", "edge", "unknown"]
 """Marking of a lane's boundary as its driver sees it, own side first: `dashed_solid` may be crossed from this lane, `solid_dashed` not.
@@ -101,7 +103,7 @@ class Lane:
     `speed_limit`: m/s posted for it on the map, None unknown. `kinds`: the map's lane kinds (`urban`, `highway`, `bicycle_lane`,
     `crosswalk`, `sidewalk`, `shoulder`, `intersection`, `bus_lane`, `parking` …). `users`: who may use it in its direction; empty: unknown.
     `left`/`right`: neighbouring lane's id with `*_same_direction`. `turn`: how a lane within a junction leads, None elsewhere.
-    `facts`: what the map knows of this lane in the vocabulary's words.
+    `facts`: what the map knows of this lane in the vocabulary's words. `control`: for a lane within a junction, how the entry into it is regulated.
     """
 
     id: str
@@ -127,6 +129,7 @@ class Lane:
     turn: Turn | None = None
     road: str | None = None
     facts: Mapping[str, Value] = field(default_factory=dict)
+    control: Control = "unknown"
 
     @cached_property
     def stations(self) -> Floats:
@@ -142,7 +145,27 @@ class Lane:
     @cached_property
     def widths(self) -> Floats:
         """Width at each centre point, metres, (n,)."""
-        return np.hypot(*(self.left_line - self.right_line).T)
+        found: Floats = np.hypot(*(self.left_line - self.right_line).T)
+        return found
+
+
+@dataclass(frozen=True)
+class Approach:
+    """One way into a junction: the lanes that end at it, and the id of the approach that comes from its left, None unknown."""
+
+    id: str
+    lanes: tuple[str, ...]
+    left_of: str | None = None
+
+
+@dataclass(frozen=True)
+class RoadJunction:
+    """A junction: its approaches and the lanes within it. `derived`: found from the lanes' geometry, the file names none."""
+
+    id: str
+    lanes: tuple[str, ...]
+    approaches: tuple[Approach, ...] = ()
+    derived: bool = False
 
 
 @dataclass(frozen=True)
@@ -150,7 +173,8 @@ class RoadMap:
     """All lanes by id, with the lights, signs, zones and crosswalks they refer to.
 
     `origin`: longitude and latitude of (0, 0) in degrees, where known. `facts`: what holds everywhere on it. `jurisdiction`: the one that
-    governs where no zone says otherwise, None unknown. `source`: where it was read from, for people.
+    governs where no zone says otherwise, None unknown. `source`: where it was read from, for people. `notes`: what a reader left out,
+    repaired or took on trust, a sentence each.
     """
 
     lanes: Mapping[str, Lane]
@@ -162,3 +186,5 @@ class RoadMap:
     facts: Mapping[str, Value] = field(default_factory=dict)
     jurisdiction: str | None = None
     source: str = ""
+    junctions: Mapping[str, RoadJunction] = field(default_factory=dict)
+    notes: tuple[str, ...] = ()
