@@ -1,0 +1,1 @@
+"""SUMO as a world: its traffic drives on our road map, our planner drives the ego."""
