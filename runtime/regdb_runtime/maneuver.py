@@ -5,53 +5,11 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import Literal
 
-from regdb_runtime.maps.reference_path import ReferencePath
-from regdb_runtime.maps.road_map import Turn
+from regdb_runtime.maps.lane_path import Junction as Junction
+from regdb_runtime.maps.lane_path import LanePath as LanePath
+from regdb_runtime.maps.lane_path import LaneSpan as LaneSpan
 from regdb_runtime.observation import TurnSignal
 from regdb_runtime.planning.goal import Goal
-
-
-@dataclass(frozen=True, slots=True)
-class LaneSpan:
-    """The part of a path that runs along one lane: stations along the path, and the lane's own station at `start`."""
-
-    lane: str
-    start: float
-    end: float
-    lane_start: float = 0.0
-
-
-@dataclass(frozen=True, eq=False)
-class LanePath:
-    """A path along lanes, one after the other, with the stations of each."""
-
-    path: ReferencePath
-    spans: tuple[LaneSpan, ...]
-
-    def lane_at(self, station: float) -> LaneSpan:
-        """The span at a station; the first or last beyond the ends."""
-        for span in self.spans:
-            if station < span.end:
-                return span
-        return self.spans[-1]
-
-
-@dataclass(frozen=True, slots=True)
-class Junction:
-    """The next junction on the path, stations along the path: where to stop (limit line, else crosswalk, else entrance), where it begins and ends.
-
-    `control`: `signal`, `stop`, `all_way_stop`, `yield`, `none` or `unknown`. `lights`: those that speak to the turn. `turn`: how the route leads.
-    """
-
-    id: str
-    stop_station: float
-    entrance: float
-    exit: float
-    turn: Turn
-    control: str
-    lights: tuple[str, ...] = ()
-    crosswalks: tuple[str, ...] = ()
-    stop_line_marked: bool = True
 
 
 @dataclass(frozen=True, eq=False)
