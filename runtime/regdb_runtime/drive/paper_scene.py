@@ -14,7 +14,7 @@ from dataclasses import dataclass, field
 from typing import Literal
 
 from regdb.units import to_si
-from regdb_runtime.maps.road_map import Marking
+from regdb_runtime.maps.road_map import Marking, Turn
 from regdb_runtime.worlds.road_spec import (
     Arm,
     JunctionSpec,
@@ -125,7 +125,7 @@ def _school_road(scene: PaperScene) -> RoadSpec:
 
 
 def _junction(scene: PaperScene) -> JunctionSpec:
-    arrows = ("right",) if scene.light == "red_arrow" else ()
+    arrows: tuple[Turn, ...] = ("right",) if scene.light == "red_arrow" else ()
     arms = (
         Arm("first", "end", arrows=arrows, right_turn_lane=bool(arrows)),
         Arm("ahead", "start"),
