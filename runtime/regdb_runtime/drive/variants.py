@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import difflib
 from dataclasses import dataclass, replace
+from typing import Literal
 
 from regdb_runtime.drive.paper_scene import PaperScene
 from regdb_runtime.errors import RequestError
@@ -17,18 +18,16 @@ SLOWS = ("zone_detected", "reduced_speed")
 class Expectation:
     """What a drive must show.
 
-    `events`: exactly these, in order. `sections`: citations among those that decided. `slowest_in_zone`: m/s that no tick in the zone exceeds.
-    `passes_in_lane`: the cyclist is passed without leaving the lane (None: nothing is passed). `on_red`: the line is crossed while the light is
-    red (None: no light). `ends`: how the drive ends (`destination`, or `time` where it only has to keep the law).
+    `events`: exactly these, in order. `sections`: citations among those that decided. `zone_limit`: m/s that no tick in the zone exceeds.
+    `passes`: from which lane the cyclist is passed, empty when it is not. `crosses`: what the light shows as the line is crossed.
     """
 
     says: str
     events: tuple[str, ...] = ()
     sections: tuple[str, ...] = ()
     zone_limit: float | None = None
-    passes_in_lane: bool | None = None
-    on_red: bool | None = None
-    ends: str = "destination"
+    passes: Literal["", "same_lane", "next_lane"] = ""
+    crosses: Literal["", "red", "green"] = ""
 
 
 @dataclass(frozen=True)
@@ -55,14 +54,14 @@ _WAITS = "stops at the line and waits for green"
 VARIANTS: tuple[Variant, ...] = (
     Variant("paper", _WHOLE, Expectation(
         "passes the cyclist from the second lane, turns right on red after a full stop, keeps 25 mph past the school",
-        (*OVERTAKES, *TURNS_ON_RED, *SLOWS), ("CVC 21760(c)", "CVC 21453(a)", "CVC 21453(b)", "CVC 22352(b)(2)"), 25 * _MPH, False, True,
+        (*OVERTAKES, *TURNS_ON_RED, *SLOWS), ("CVC 21760(c)", "CVC 21453(a)", "CVC 21453(b)", "CVC 22352(b)(2)"), 25 * _MPH, "next_lane", "red",
     )),
-    Variant("cyclist", _CYCLIST, Expectation("passes from the second lane and comes back", OVERTAKES, ("CVC 21760(c)",), None, False)),
+    Variant("cyclist", _CYCLIST, Expectation("passes from the second lane and comes back", OVERTAKES, ("CVC 21760(c)",), passes="next_lane")),
     Variant("cyclist-2022", replace(_CYCLIST, start=_2022), Expectation(
-        "may pass within the lane, at three feet or more: the older text of 21760", OVERTAKES, ("CVC 21760(c)",), None, True,
+        "may pass within the lane, at three feet or more: the older text of 21760", OVERTAKES, ("CVC 21760(c)",), passes="same_lane",
     )),
     Variant("cyclist-2023", replace(_CYCLIST, start=_2023), Expectation(
-        "must change lanes to pass: 21760(c) as of 2023-01-01", OVERTAKES, ("CVC 21760(c)",), None, False,
+        "must change lanes to pass: 21760(c) as of 2023-01-01", OVERTAKES, ("CVC 21760(c)",), passes="next_lane",
     )),
     Variant("solid-line", replace(_CYCLIST, divider="double_solid", width=3.4), Expectation(
         f"{_FOLLOWS}: the double line may not be crossed, the lane leaves no three feet", (), ("CVC 21460(b)", "CVC 21760(c)"),
@@ -71,30 +70,30 @@ VARIANTS: tuple[Variant, ...] = (
         f"{_FOLLOWS}: one lane, too narrow for three feet", (), ("CVC 21760(c)",),
     )),
     Variant("lane-3.5m", replace(_ONE_LANE, width=3.5), Expectation(
-        "passes within the lane, just wide enough for three feet", OVERTAKES, ("CVC 21760(c)",), None, True,
+        "passes within the lane, just wide enough for three feet", OVERTAKES, ("CVC 21760(c)",), passes="same_lane",
     )),
     Variant("red", _RED, Expectation(
-        "stops, looks, turns right on red", TURNS_ON_RED, ("CVC 21453(a)", "CVC 21453(b)"), None, None, True,
+        "stops, looks, turns right on red", TURNS_ON_RED, ("CVC 21453(a)", "CVC 21453(b)"), crosses="red",
     )),
     Variant("no-turn-sign", replace(_RED, no_turn_sign=True), Expectation(
-        f"{_WAITS}: a sign forbids the turn on red", TURNS_ON_RED, ("CVC 21453(a)",), None, None, False,
+        f"{_WAITS}: a sign forbids the turn on red", TURNS_ON_RED, ("CVC 21453(a)",), crosses="green",
     )),
     Variant("red-arrow", replace(_RED, light="red_arrow"), Expectation(
-        f"{_WAITS}: no turning on a red arrow", TURNS_ON_RED, ("CVC 21453(c)",), None, None, False,
+        f"{_WAITS}: no turning on a red arrow", TURNS_ON_RED, ("CVC 21453(c)",), crosses="green",
     )),
     Variant("pedestrian", replace(_RED, pedestrian=True), Expectation(
-        "lets the pedestrian cross before it turns on red", TURNS_ON_RED, ("CVC 21453(a)",), None, None, True,
+        "lets the pedestrian cross before it turns on red", TURNS_ON_RED, ("CVC 21453(a)",), crosses="red",
     )),
     Variant("cross-traffic", replace(_RED, cross_traffic=True), Expectation(
-        "waits for a gap in the crossing traffic before it turns on red", TURNS_ON_RED, ("CVC 21453(a)",), None, None, True,
+        "waits for a gap in the crossing traffic before it turns on red", TURNS_ON_RED, ("CVC 21453(a)",), crosses="red",
     )),
-    Variant("green", replace(_RED, light="green"), Expectation("turns without stopping", (), (), None, None, False)),
+    Variant("green", replace(_RED, light="green"), Expectation("turns without stopping", (), (), crosses="green")),
     Variant("no-right-on-red", replace(_RED, jurisdiction="new_york_city"), Expectation(
-        f"{_WAITS}: this city's law has no right on red", TURNS_ON_RED, ("RCNY 4-03(a)(3)",), None, None, False,
+        f"{_WAITS}: this city's law has no right on red", TURNS_ON_RED, ("RCNY 4-03(a)(3)",), crosses="green",
     ), "added_codes"),
     Variant("right-on-red-upstate", replace(_RED, jurisdiction="new_york"), Expectation(
         "stops, looks, turns right on red: the same scene under the State's law", TURNS_ON_RED, ("NYVTL 1111(d)(1)", "NYVTL 1111(d)(2)(a)"),
-        None, None, True,
+        crosses="red",
     ), "added_codes"),
     Variant("school", _SCHOOL, Expectation("keeps 25 mph past the school", SLOWS, ("CVC 22352(b)(2)",), 25 * _MPH)),
     Variant("school-no-children", replace(_SCHOOL, children=False), Expectation("drives on: no children go to school", (), (), 35 * _MPH)),
@@ -112,7 +111,7 @@ VARIANTS: tuple[Variant, ...] = (
         "keeps 25 mph in the band before the school zone that the paper quotes, on a road posted 30", SLOWS, ("CVC 22358.4(b)(1)(B)",), 25 * _MPH,
     )),
     Variant("vlm-silent", replace(_RED, misses=("sign.no_turn_on_red",)), Expectation(
-        f"{_WAITS}: whether a sign forbids the turn is not known", TURNS_ON_RED, ("CVC 21453(a)",), None, None, False,
+        f"{_WAITS}: whether a sign forbids the turn is not known", TURNS_ON_RED, ("CVC 21453(a)",), crosses="green",
     )),
     Variant("school-silent", replace(_SCHOOL, misses=("school.children_going",)), Expectation(
         "keeps 25 mph: whether children go to school is not known", SLOWS, (), 25 * _MPH,
