@@ -69,13 +69,22 @@ class Sign:
     speed: float | None = None
 
 
+@dataclass(frozen=True, slots=True)
+class Hours:
+    """A span of the local day in seconds, half-open, on some weekdays (Monday 0; empty: all); one that ends before it begins runs over midnight."""
+
+    start: int
+    end: int
+    weekdays: frozenset[int] = frozenset()
+
+
 @dataclass(frozen=True)
 class Zone:
     """An area with facts of its own: a school's road, a work zone, another jurisdiction.
 
     `polygon` (n, 2). `facts` hold inside it, in the vocabulary's words and SI. `kind` is for people and readers: `school`, `work`,
     `jurisdiction` … `jurisdiction`: the one that governs inside, None where the zone does not change it. `distance_fact`: the fact that takes
-    the distance to `landmark` (x, y) (`school.distance`) for points in the zone, None without.
+    the distance to `landmark` (x, y) (`school.distance`) for points in the zone, None without. `hours`: when the zone is one; empty: always.
     """
 
     id: str
@@ -85,6 +94,7 @@ class Zone:
     jurisdiction: str | None = None
     distance_fact: str | None = None
     landmark: tuple[float, float] | None = None
+    hours: tuple[Hours, ...] = ()
 
 
 @dataclass(frozen=True)
