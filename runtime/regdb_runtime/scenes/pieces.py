@@ -1,0 +1,230 @@
+"""A lane cut into pieces over which nothing that stands still changes: zones, distances that the law compares, crosswalks, rails."""
+
+from __future__ import annotations
+
+import datetime
+import math
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+
+import numpy as np
+
+from regdb.condition import And, Compare, Node, Not, Or
+from regdb.regulation import Regulation
+from regdb.vocabulary import Value
+from regdb_runtime.maps.lines import inside
+from regdb_runtime.maps.road_map import Floats, Lane, RoadMap, Zone
+from regdb_runtime.scenes.lane_facts import lane_facts, types_with_lanes
+
+RAIL = "rail"
+"""Kind of a zone that lies between the outermost rails of a crossing; its facts hold on the way to it."""
+PRECISION = 0.01
+"""Metres to which a border is found."""
+
+
+@dataclass(frozen=True, eq=False)
+class Piece:
+    """Part of a lane, by its own stations: facts of everything that stands still, and who governs there (None: the whole map's)."""
+
+    start: float
+    end: float
+    facts: Mapping[str, Value]
+    jurisdiction: str | None
+
+
+@dataclass(frozen=True, slots=True)
+class Band:
+    """Where a lane lies in an area (a crosswalk, rails), by its own stations."""
+
+    id: str
+    start: float
+    end: float
+    marked: bool = True
+    facts: Mapping[str, Value] | None = None
+
+
+def bounds_by_fact(regulations: Iterable[Regulation]) -> dict[str, tuple[float, ...]]:
+    """Fact -> every constant in SI that some condition compares it with alone, ascending: where a distance on the map changes the law."""
+    found: dict[str, set[float]] = {}
+    for rule in regulations:
+        for node in (rule.when, rule.unless):
+            if node is not None:
+                _collect(node, found)
+    return {fact: tuple(sorted(values)) for fact, values in sorted(found.items())}
+
+
+def _collect(node: Node, found: dict[str, set[float]]) -> None:
+    if isinstance(node, (And, Or)):
+        for part in node.parts:
+            _collect(part, found)
+    elif isinstance(node, Not):
+        _collect(node.part, found)
+    elif isinstance(node, Compare):
+        terms = (*node.left.terms, *((-scale, fact) for scale, fact in node.right.terms))
+        if len(terms) == 1 and terms[0][0]:
+            scale, fact = terms[0]
+            found.setdefault(fact, set()).add((node.right.constant - node.left.constant) / scale)
+
+
+class LanePieces:
+    """The pieces of every lane of a map, each worked out when first asked for. `bounds`: see `bounds_by_fact`."""
+
+    def __init__(self, road_map: RoadMap, bounds: Mapping[str, tuple[float, ...]], step: float = 1.0) -> None:
+        self.road_map, self._bounds, self._step = road_map, bounds, step
+        self._pieces: dict[tuple[str, tuple[int, ...]], tuple[Piece, ...]] = {}
+        self._bands: dict[str, tuple[tuple[Band, ...], tuple[Band, ...]]] = {}
+        self._facts: dict[str, Mapping[str, Value]] = {}
+        self._timed = tuple(index for index, zone in enumerate(road_map.zones) if zone.hours)
+
+    def at(self, lane: str, clock: datetime.datetime) -> tuple[Piece, ...]:
+        """The pieces of a lane at a local time, in order, from 0 to its length."""
+        running = tuple(index for index in self._timed if runs(self.road_map.zones[index], clock))
+        key = lane, running
+        if key not in self._pieces:
+            self._pieces[key] = tuple(self._cut(self.road_map.lanes[lane], frozenset(running)))
+        return self._pieces[key]
+
+    def crosswalks(self, lane: str) -> tuple[Band, ...]:
+        """Crosswalks that the lane's middle crosses, in order."""
+        return self._areas(lane)[0]
+
+    def rails(self, lane: str) -> tuple[Band, ...]:
+        """Rail crossings on the lane, in order."""
+        return self._areas(lane)[1]
+
+    def next_change(self, clock: datetime.datetime, within: float) -> float | None:
+        """Seconds until the first hours of a zone begin or end, None when none do within so many seconds."""
+        changes = [wait for index in self._timed for wait in _waits(self.road_map.zones[index], clock) if 0 < wait <= within]
+        return min(changes, default=None)
+
+    def facts_of(self, lane: Lane) -> Mapping[str, Value]:
+        """Facts of a whole lane: the map's everywhere, then what is worked out, then its own. Within a junction the road is the one it comes from."""
+        if lane.id not in self._facts:
+            self._facts[lane.id] = self._whole(lane)
+        return self._facts[lane.id]
+
+    def _whole(self, lane: Lane) -> dict[str, Value]:
+        lanes = self.road_map.lanes
+        road = next((lanes[name] for name in lane.predecessors if name in lanes), lane) if lane.junction is not None else lane
+        told = dict(self.road_map.facts)
+        found = lane_facts(self.road_map, road)
+        if road is not lane:
+            own = lane_facts(self.road_map, lane)
+            found |= {name: own[name] for name in ("lane.width", "posted.speed", "sign.speed_limit") if name in own}
+        if "road.two_way" not in found and told.get("road.divided") is False and road.facts.get("road.divided") is not True and road.junction is None:
+            found |= {"road.one_way": True, "road.two_way": False, "road.lanes": found["road.lanes_same_direction"]}
+        facts = told | found | dict(road.facts) | dict(lane.facts)
+        types = lane.facts.get("road.types", road.facts.get("road.types", told.get("road.types")))
+        if isinstance(types, frozenset):
+            facts["road.types"] = types_with_lanes(types, found | dict(road.facts))
+        return facts
+
+    def _cut(self, lane: Lane, running: frozenset[int]) -> Iterable[Piece]:
+        zones = [zone for index, zone in enumerate(self.road_map.zones) if zone.kind != RAIL and (not zone.hours or index in running)]
+        inner = [(zone, start, end) for zone in zones for start, end in areas_along(lane, zone.polygon, self._step)]
+        borders = {0.0, lane.length} | {at for _, start, end in inner for at in (start, end)}
+        for zone, start, end in inner:
+            borders |= self._where_distance_counts(lane, zone, start, end)
+        ordered = sorted(borders)
+        base = self.facts_of(lane)
+        for start, end in zip(ordered, ordered[1:], strict=False):
+            if end - start > PRECISION:
+                here = [zone for zone, first, last in inner if first <= (start + end) / 2 <= last]
+                yield Piece(start, end, self._with_zones(lane, base, here, start, end), _governing(here))
+
+    def _where_distance_counts(self, lane: Lane, zone: Zone, start: float, end: float) -> set[float]:
+        """Stations at which the distance to the zone's landmark passes a number that a condition compares it with."""
+        if zone.distance_fact is None or zone.landmark is None:
+            return set()
+        stations = np.linspace(start, end, max(2, math.ceil((end - start) / self._step) + 1))
+        away = distances(lane, stations, zone.landmark)
+        found: set[float] = set()
+        for bound in self._bounds.get(zone.distance_fact, ()):
+            for row in np.flatnonzero((away[:-1] <= bound) != (away[1:] <= bound)):
+                share = (bound - away[row]) / (away[row + 1] - away[row])
+                found.add(float(stations[row] + share * (stations[row + 1] - stations[row])))
+        return found
+
+    def _with_zones(self, lane: Lane, base: Mapping[str, Value], zones: list[Zone], start: float, end: float) -> dict[str, Value]:
+        facts = dict(base)
+        for zone in zones:
+            facts |= zone.facts
+            if zone.distance_fact is not None and zone.landmark is not None:
+                margin = min(PRECISION, (end - start) / 4)  # within its borders the piece lies on one side of each number
+                stations = np.linspace(start + margin, end - margin, max(2, math.ceil((end - start) / self._step) + 1))
+                facts[zone.distance_fact] = float(distances(lane, stations, zone.landmark).min())
+        return facts
+
+    def _areas(self, lane: str) -> tuple[tuple[Band, ...], tuple[Band, ...]]:
+        if lane not in self._bands:
+            found = self.road_map.lanes[lane]
+            walks = [
+                Band(walk.id, start, end, walk.marked) for walk in self.road_map.crosswalks for start, end in areas_along(found, walk.polygon, self._step / 2)
+            ]
+            rails = [
+                Band(zone.id, start, end, True, zone.facts)
+                for zone in self.road_map.zones if zone.kind == RAIL for start, end in areas_along(found, zone.polygon, self._step / 2)
+            ]  # fmt: skip
+            order = (lambda band: (band.start, band.id))
+            self._bands[lane] = tuple(sorted(walks, key=order)), tuple(sorted(rails, key=order))
+        return self._bands[lane]
+
+
+def _governing(zones: list[Zone]) -> str | None:
+    return next((zone.jurisdiction for zone in reversed(zones) if zone.jurisdiction is not None), None)
+
+
+def runs(zone: Zone, clock: datetime.datetime) -> bool:
+    """Whether a zone's facts hold at a local time; a span that ends before it begins runs over midnight, of the day on which it begins."""
+    second = clock.hour * 3600 + clock.minute * 60 + clock.second
+    for span in zone.hours:
+        today = not span.weekdays or clock.weekday() in span.weekdays
+        yesterday = not span.weekdays or (clock.weekday() - 1) % 7 in span.weekdays
+        if span.start <= span.end:
+            if today and span.start <= second < span.end:
+                return True
+        elif (today and second >= span.start) or (yesterday and second < span.end):
+            return True
+    return False
+
+
+def _waits(zone: Zone, clock: datetime.datetime) -> list[float]:
+    second = clock.hour * 3600 + clock.minute * 60 + clock.second + clock.microsecond / 1e6
+    return [(border - second) % 86400 for span in zone.hours for border in (span.start, span.end)]
+
+
+def points_at(lane: Lane, stations: Floats) -> Floats:
+    """Points (n, 2) of the lane's middle at stations (n,)."""
+    return np.column_stack([np.interp(stations, lane.stations, lane.center[:, axis]) for axis in (0, 1)])
+
+
+def distances(lane: Lane, stations: Floats, place: tuple[float, float]) -> Floats:
+    """Distance of the lane's middle at stations (n,) to a place, metres."""
+    return np.asarray(np.hypot(*(points_at(lane, stations) - np.asarray(place)).T))
+
+
+def areas_along(lane: Lane, polygon: Floats, step: float) -> list[tuple[float, float]]:
+    """Where the lane's middle lies in a polygon: (from, to) by its stations, borders to a centimetre."""
+    low, high = polygon.min(axis=0), polygon.max(axis=0)
+    if (lane.center.max(axis=0) < low).any() or (lane.center.min(axis=0) > high).any():
+        return []
+    stations = np.linspace(0.0, lane.length, max(2, math.ceil(lane.length / step) + 1))
+    within = inside(points_at(lane, stations), polygon)
+    changes = np.flatnonzero(within[:-1] != within[1:])
+    borders = [_border(lane, polygon, float(stations[row]), float(stations[row + 1]), bool(within[row])) for row in changes]
+    if within[0]:
+        borders.insert(0, 0.0)
+    if within[-1]:
+        borders.append(lane.length)
+    return list(zip(borders[::2], borders[1::2], strict=True))
+
+
+def _border(lane: Lane, polygon: Floats, low: float, high: float, within: bool) -> float:
+    """Where the middle enters or leaves the polygon between two stations, by halving."""
+    while high - low > PRECISION:
+        middle = (low + high) / 2
+        if bool(inside(points_at(lane, np.array([middle])), polygon)[0]) == within:
+            low = middle
+        else:
+            high = middle
+    return (low + high) / 2
