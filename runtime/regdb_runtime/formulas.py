@@ -2,10 +2,29 @@
 
 from __future__ import annotations
 
+from typing import TypeVar
 
-def after_response(speed: float, response_time: float, acceleration: float) -> tuple[float, float]:
+import numpy as np
+from numpy.typing import NDArray
+
+Speed = TypeVar("Speed", float, NDArray[np.float64])
+"""One speed, or an array of them: the answer has the same shape."""
+
+
+def after_response(speed: Speed, response_time: float, acceleration: float) -> tuple[Speed, Speed]:
     """Distance covered while responding at constant acceleration, and the speed then reached."""
     return speed * response_time + acceleration * response_time**2 / 2, speed + acceleration * response_time
+
+
+def braking_distance(speed: Speed, braking: float) -> Speed:
+    """Distance to a stop at constant braking."""
+    return speed**2 / (2 * braking)
+
+
+def responding_stop(speed: Speed, response_time: float, acceleration: float, braking: float) -> Speed:
+    """Distance to a stop: accelerating while responding, then constant braking (one side of the article's definitions)."""
+    covered, reached = after_response(speed, response_time, acceleration)
+    return covered + braking_distance(reached, braking)
 
 
 def rss_longitudinal(
@@ -16,8 +35,8 @@ def rss_longitudinal(
     The rear one accelerates at most during its response time, then brakes at least `min_braking`; the front one brakes at most
     `max_braking`.
     """
-    covered, reached = after_response(rear_speed, response_time, max_acceleration)
-    return max(0.0, covered + reached**2 / (2 * min_braking) - front_speed**2 / (2 * max_braking))
+    rear = responding_stop(rear_speed, response_time, max_acceleration, min_braking)
+    return max(0.0, rear - braking_distance(front_speed, max_braking))
 
 
 def rss_opposite(
@@ -27,9 +46,8 @@ def rss_opposite(
 
     The one in its correct lane (here the vehicle itself) need only brake by `min_braking_correct`.
     """
-    own_covered, own_reached = after_response(own_speed, response_time, max_acceleration)
-    other_covered, other_reached = after_response(other_speed, response_time, max_acceleration)
-    return own_covered + own_reached**2 / (2 * min_braking_correct) + other_covered + other_reached**2 / (2 * min_braking)
+    own = responding_stop(own_speed, response_time, max_acceleration, min_braking_correct)
+    return own + responding_stop(other_speed, response_time, max_acceleration, min_braking)
 
 
 def rss_yield(other_speed: float, *, response_time: float, max_acceleration: float, min_braking: float) -> float:
@@ -47,13 +65,11 @@ def rss_lateral(
 
     Lateral speeds are positive to the right and may be negative.
     """
-    left_covered, left_reached = after_response(left_speed, response_time, max_lateral_acceleration)
-    right_covered, right_reached = after_response(right_speed, response_time, -max_lateral_acceleration)
-    left = left_covered + left_reached**2 / (2 * min_lateral_braking)
-    right = right_covered - right_reached**2 / (2 * min_lateral_braking)
-    return fluctuation_margin + max(0.0, left - right)
+    left = responding_stop(left_speed, response_time, max_lateral_acceleration, min_lateral_braking)
+    right = responding_stop(-right_speed, response_time, max_lateral_acceleration, min_lateral_braking)
+    return fluctuation_margin + max(0.0, left + right)
 
 
-def stopping_distance(speed: float, *, response_time: float, min_braking: float) -> float:
+def stopping_distance(speed: Speed, *, response_time: float, min_braking: float) -> Speed:
     """Distance to a stop: speed held while responding, then constant braking (AASHTO's stopping sight distance on the level)."""
-    return speed * response_time + speed**2 / (2 * min_braking)
+    return speed * response_time + braking_distance(speed, min_braking)
