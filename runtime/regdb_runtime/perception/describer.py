@@ -1,0 +1,57 @@
+"""The protocol every vision-language client keeps: a frame and a prompt in, a text out, before a deadline or not at all."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import Any, Literal, Protocol
+
+from regdb_runtime.observation import Provenance
+
+Failure = Literal["", "deadline", "connection", "status", "malformed", "too_large", "cancelled"]
+
+
+@dataclass(frozen=True, slots=True)
+class Frame:
+    """One camera image. `captured`: seconds since the run began. `image`: encoded bytes of `media_type`; `id` names it in evidence and records."""
+
+    id: str
+    captured: float
+    image: bytes
+    media_type: str = "image/jpeg"
+    width: int = 0
+    height: int = 0
+
+
+@dataclass(frozen=True)
+class Prompt:
+    """What is asked: text, the JSON Schema an answer should keep (None: free text), turns of earlier ticks, and whether a crop is asked about."""
+
+    text: str
+    schema: Mapping[str, Any] | None = None
+    history: tuple[tuple[str, str], ...] = ()
+    name: str = ""
+    max_tokens: int = 128
+
+
+@dataclass(frozen=True, slots=True)
+class Description:
+    """An answer or a failure; never both empty. `took`: wall-clock seconds of the call."""
+
+    text: str
+    failure: Failure = ""
+    detail: str = ""
+    took: float = 0.0
+    model: str = ""
+    usage: Mapping[str, int] = field(default_factory=dict)
+
+
+class Describer(Protocol):
+    """A client. It never raises and never outlasts the deadline: a failure is an answer too."""
+
+    @property
+    def provenance(self) -> Provenance: ...
+
+    def describe(self, frame: Frame, prompt: Prompt, deadline: float) -> Description:
+        """Ask; `deadline` in wall-clock seconds from now bounds the whole call, every phase of it."""
+        ...
