@@ -45,7 +45,7 @@ def events_of(run: Record, ticks: Sequence[Record]) -> tuple[Event, ...]:
     marks = run["marks"]
     found = [*_overtakings(ticks)]
     for line in marks["stop_lines"]:
-        found += _stops(ticks, line)
+        found += _stops(ticks, line["station"])
     for zone in marks["zones"]:
         found += _zone(ticks, zone["start"], zone["end"])
     return tuple(sorted(found, key=lambda event: event.time))

@@ -16,6 +16,7 @@ from regdb.vocabulary import Value, Vocabulary
 from regdb_runtime.decision import CandidateReport, CostTerms, Decision, Rejection
 from regdb_runtime.drive.downtrack import Downtrack
 from regdb_runtime.emergency import EmergencyReport
+from regdb_runtime.geometry import boxes, distance
 from regdb_runtime.observation import Footprint, Observation, Track
 from regdb_runtime.trajectory import Trajectory
 from regdb_runtime.verdict import Verdict
@@ -54,7 +55,7 @@ class Recorder:
             "candidates": [candidate_record(item) for item in decision.candidates],
             "plan": plan_record(decision.trajectory) if decision.strategic else None,
             "emergency": emergency_record(decision.emergency),
-            "tracks": [track_record(track) for track in observation.tracks],
+            "tracks": self._tracks(observation),
             "signals": {name: [[i.color, i.shape, i.flashing] for i in shown] for name, shown in sorted(observation.signals.items())},
             "facts": dict(sorted(observation.facts.items())),
             "silent": sorted(observation.silent),
@@ -70,6 +71,17 @@ class Recorder:
             "x": ego.x, "y": ego.y, "heading": ego.heading, "speed": ego.speed, "acceleration": ego.acceleration, "curvature": ego.curvature,
             "turn_signal": ego.turn_signal, "station": station, "front": front, "offset": offset,
         }  # fmt: skip
+
+
+    def _tracks(self, observation: Observation) -> list[Record]:
+        """Every road user with its clearance: the distance, edge to edge, between its box and the vehicle's."""
+        tracks, ego = observation.tracks, observation.ego
+        if not tracks:
+            return []
+        own = boxes(*ego.box_center(self._footprint), ego.heading, self._footprint.length, self._footprint.width)
+        columns = zip(*((track.x, track.y, track.heading, track.length, track.width) for track in tracks), strict=True)
+        gaps = distance(own, boxes(*columns))
+        return [track_record(track, float(gap)) for track, gap in zip(tracks, gaps, strict=True)]
 
 
 def candidate_record(report: CandidateReport) -> Record:
@@ -103,11 +115,11 @@ def emergency_record(report: EmergencyReport) -> Record:
     return {"active": report.active, "gap": report.gap, "required": report.required, "track": report.track}
 
 
-def track_record(track: Track) -> Record:
-    """One road user, as a box."""
+def track_record(track: Track, clearance: float) -> Record:
+    """One road user, as a box, with its clearance to the vehicle."""
     return {
         "id": track.id, "kind": track.kind, "x": track.x, "y": track.y, "heading": track.heading, "speed": track.speed,
-        "length": track.length, "width": track.width,
+        "length": track.length, "width": track.width, "clearance": clearance,
     }  # fmt: skip
 
 
