@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from regdb_runtime.errors import OutsideDomain
-from regdb_runtime.maps.smoothing import Floats, PathSettings, PathTable, tabulate
+from regdb_runtime.maps.smoothing import Floats, PathSettings, tabulate
 from regdb_runtime.observation import EgoState
 from regdb_runtime.trajectory import FrenetState
 

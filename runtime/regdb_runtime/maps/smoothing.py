@@ -69,7 +69,7 @@ class PathTable:
 
 def tabulate(points: Floats, settings: PathSettings) -> PathTable:
     """The table of the line through waypoints (n, 2), n >= 2, none of them twice in a row."""
-    from scipy.interpolate import CubicSpline  # noqa: PLC0415  # 0.4 s to import, and only who plans needs it
+    from scipy.interpolate import CubicSpline  # 0.4 s to import, and only who plans needs it
 
     knots = smoothed(points, settings) if settings.smoothing_length > 0.0 and len(points) > 2 else points
     chord = _chord(knots)
@@ -123,7 +123,7 @@ class _Weights:
 
     def solve(self, data: Floats, length: float) -> Floats:
         """The nodes (count, 2) that fit data best; the normal equations have seven diagonals."""
-        from scipy.linalg import solveh_banded  # noqa: PLC0415
+        from scipy.linalg import solveh_banded
 
         own, other, weight = 1 - self.share, self.share, self.weight
         banded = _roughness(self.count) * (length**6 / self.spacing**5)

@@ -1,0 +1,70 @@
+"""Polynomials of time in batches: changes of speed (quartics of the station), ways to a point (quintics), and chains of them."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+Floats = NDArray[np.float64]
+
+
+def change_speed(speed: ArrayLike, acceleration: ArrayLike, end_speed: ArrayLike, duration: ArrayLike) -> Floats:
+    """Coefficients (n, 6), lowest first, of the quartic from station 0 that ends with a speed and no acceleration (least integral of jerk^2)."""
+    v, a, w, t = np.broadcast_arrays(*(np.asarray(value, float) for value in (speed, acceleration, end_speed, duration)))
+    gain = w - v
+    third = gain / t**2 - 2 * a / (3 * t)
+    fourth = a / (4 * t**2) - gain / (2 * t**3)
+    return np.stack((np.zeros_like(v), v, a / 2, third, fourth, np.zeros_like(v)), axis=-1)
+
+
+def change_way(duration: ArrayLike, speed: ArrayLike, acceleration: ArrayLike, end_speed: ArrayLike) -> Floats:
+    """Metres that `change_speed` covers."""
+    t = np.asarray(duration, float)
+    return np.asarray(t * (np.asarray(speed) + np.asarray(end_speed)) / 2 + np.asarray(acceleration) * t * t / 12)
+
+
+def change_time(way: ArrayLike, speed: ArrayLike, acceleration: ArrayLike, end_speed: ArrayLike) -> Floats:
+    """Duration of the `change_speed` that covers exactly a way; NaN where none does (too much braking already, or no way left).
+
+    The rest of such a change is again the change that covers the rest of the way, so planning anew on the way gives the same motion.
+    """
+    mean = (np.asarray(speed, float) + np.asarray(end_speed, float)) / 2
+    d, a = np.asarray(way, float), np.asarray(acceleration, float)
+    with np.errstate(invalid="ignore", divide="ignore"):
+        found = 2 * d / (mean + np.sqrt(mean * mean + a * d / 3))
+    return np.asarray(np.where((d > 0) & (found > 0) & np.isfinite(found), found, np.nan))
+
+
+def quintic(start: tuple[ArrayLike, ArrayLike, ArrayLike], end: tuple[ArrayLike, ArrayLike, ArrayLike], duration: ArrayLike) -> Floats:
+    """Coefficients (n, 6), lowest first, between two values with their first and second derivatives."""
+    x0, v0, a0, x1, v1, a1, t = np.broadcast_arrays(*(np.asarray(value, float) for value in (*start, *end, duration)))
+    way = x1 - x0 - v0 * t - a0 * t * t / 2
+    speed = (v1 - v0 - a0 * t) * t
+    rate = (a1 - a0) * t * t
+    third = (10 * way - 4 * speed + rate / 2) / t**3
+    fourth = (-15 * way + 7 * speed - rate) / t**4
+    fifth = (6 * way - 3 * speed + rate / 2) / t**5
+    return np.stack((x0, v0, a0 / 2, third, fourth, fifth), axis=-1)
+
+
+@dataclass(frozen=True, eq=False)
+class Chains:
+    """Motions of several pieces: `starts` (n, k) seconds, `pieces` (n, k, 6) of the time since their start. The last goes on for ever."""
+
+    starts: Floats
+    pieces: Floats
+
+    def at(self, time: Floats) -> tuple[Floats, Floats, Floats]:
+        """Value and first and second derivative (n, t) at instants (t,) >= 0; at a seam the later piece counts."""
+        n, k = self.starts.shape
+        piece = (time[None, :, None] >= self.starts[:, None, :] - 1e-9).sum(axis=2) - 1
+        flat = piece + np.arange(n)[:, None] * k
+        since = time[None, :] - self.starts.ravel().take(flat)
+        table = self.pieces.reshape(n * k, 6)
+        c = [np.ascontiguousarray(table[:, power]).take(flat) for power in range(6)]
+        value = c[0] + since * (c[1] + since * (c[2] + since * (c[3] + since * (c[4] + since * c[5]))))
+        first = c[1] + since * (2 * c[2] + since * (3 * c[3] + since * (4 * c[4] + since * 5 * c[5])))
+        second = 2 * c[2] + since * (6 * c[3] + since * (12 * c[4] + since * 20 * c[5]))
+        return value, first, second

@@ -1,0 +1,178 @@
+"""Motions along the path: every way of changing speed that is worth trying, each laid on so that it slows in time for what lies ahead."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from regdb_runtime.planning.gates import SHAPE, Ahead, Gate, ahead
+from regdb_runtime.planning.goal import Goal
+from regdb_runtime.planning.polynomials import Chains, Floats, change_speed, change_time, change_way, quintic
+from regdb_runtime.planning.settings import LatticeSettings
+from regdb_runtime.trajectory import STANDING, FrenetState
+
+SAME_SPEED = 1e-6
+REVERSE = -1e-4
+"""m/s under which a motion goes backwards; above, it is rounding."""
+QUINTIC_PEAKS = (5.7736, 60.0)
+"""Greatest acceleration and jerk of the quintic from rest to rest over 1 m in 1 s."""
+SQUEEZE = 1.02
+"""By how much a later braking may surpass the nominal one before its profile is left out: the way straight to the gate is among them."""
+
+
+@dataclass(frozen=True, eq=False)
+class _Firsts:
+    """First pieces: coefficients (n, 6), durations and end speeds (n,), and whether one may be left out for braking too late."""
+
+    pieces: Floats
+    durations: Floats
+    end_speeds: Floats
+    free: bool
+
+
+def speed_profiles(
+    start: FrenetState, goal: Goal, front: float, settings: LatticeSettings, time: Floats
+) -> tuple[Floats, Floats, Floats]:
+    """Station, speed and acceleration along the path (p, t) of every motion; none goes backwards.
+
+    All start in the start state. `front`: from the rear axle to the front bumper, metres.
+    """
+    view = ahead(start, goal, front, settings)
+    firsts = [_changes(start, goal, view, settings)]
+    if not view.hold:
+        firsts += [*_to_gates(start, view), *_to_stop(start, view, settings), *_behind(start, goal, view, front, settings)]
+    chains = [_laid_on(first, start.s, view.gates, settings) for first in firsts]
+    both = Chains(np.concatenate([chain.starts for chain in chains]), np.concatenate([chain.pieces for chain in chains]))
+    station, speed, acceleration = both.at(time)
+    forward = speed.min(axis=1) >= REVERSE
+    station, speed, acceleration = station[forward], np.maximum(speed[forward], 0.0), acceleration[forward]
+    return station, speed, acceleration
+
+
+def _changes(start: FrenetState, goal: Goal, view: Ahead, settings: LatticeSettings) -> _Firsts:
+    """Changes to each end speed with each intensity; braking ones also hard."""
+    speed, acceleration = start.s_dot, start.s_ddot
+    pairs = []
+    for target in _targets(start, goal, view, settings):
+        gain = target - speed
+        if abs(gain) < SAME_SPEED and abs(acceleration) < SAME_SPEED:
+            pairs.append((target, settings.horizon))
+            continue
+        times = {_duration(gain, acceleration, peak, settings.gentle_jerk, settings.shortest) for peak in settings.intensities}
+        if gain < 0:
+            times |= {_duration(gain, acceleration, peak, settings.hard_jerk, settings.shortest) for peak in settings.hard}
+        pairs += [(target, time) for time in sorted(times)]
+    targets, durations = np.array(pairs).T
+    return _Firsts(change_speed(speed, acceleration, targets, durations), durations, targets, True)
+
+
+def _targets(start: FrenetState, goal: Goal, view: Ahead, settings: LatticeSettings) -> list[float]:
+    """End speeds, lowest first: even ones to the highest, those of the gates, the present one, the leader's."""
+    if view.hold:
+        return [0.0]
+    found = [*np.linspace(0.0, view.top, settings.speeds).tolist(), *(gate.speed for gate in view.gates)]
+    found += [start.s_dot] if start.s_dot <= view.top else []
+    found += [goal.follow.speed] if goal.follow is not None and goal.follow.speed <= view.top else []
+    kept: list[float] = []
+    for speed in sorted(found):
+        if not kept or speed > kept[-1] + SAME_SPEED:
+            kept.append(speed)
+    return kept
+
+
+def _duration(gain: float, acceleration: float, peak: float, jerk: float, shortest: float) -> float:
+    """Of a change of speed by `gain` that keeps about within a peak of acceleration and of jerk, without overshooting.
+
+    Already accelerating towards the end speed, the longest that does not overshoot with even jerk is 2 gain / acceleration.
+    """
+    plain = max(1.5 * abs(gain) / peak, (6 * abs(gain) / jerk) ** 0.5, shortest)
+    if acceleration * gain > 0:
+        return max(min(plain, 2 * gain / acceleration), 0.1)
+    return max(plain, 4 * abs(acceleration) / jerk)
+
+
+def _to_gates(start: FrenetState, view: Ahead) -> list[_Firsts]:
+    """Straight to each gate: its speed is reached there and nowhere before."""
+    gates = [gate for gate in view.gates if gate.speed < start.s_dot - SAME_SPEED]
+    if not gates:
+        return []
+    speeds, ways = np.array([gate.speed for gate in gates]), np.array([gate.station - start.s for gate in gates])
+    times = change_time(ways, start.s_dot, start.s_ddot, speeds)
+    found = np.isfinite(times)
+    pieces = change_speed(start.s_dot, start.s_ddot, speeds[found], times[found])
+    return [_Firsts(pieces, times[found], speeds[found], False)]
+
+
+def _to_stop(start: FrenetState, view: Ahead, settings: LatticeSettings) -> list[_Firsts]:
+    """Quintics to the stop point, shorter and longer than the plainest way; from a stand, as gently as intensities say."""
+    if view.stop is None or view.stop - start.s < 2 * SAME_SPEED:
+        return []
+    way = view.stop - start.s
+    plain = float(change_time(way, start.s_dot, start.s_ddot, 0.0))
+    if start.s_dot > 1.0 and np.isfinite(plain):
+        times = plain * np.array(settings.stop_stretches)
+    else:
+        peaks = np.array(settings.intensities)
+        times = np.maximum(np.sqrt(QUINTIC_PEAKS[0] * way / peaks), np.cbrt(QUINTIC_PEAKS[1] * way / settings.gentle_jerk))
+    pieces = quintic((0.0, start.s_dot, start.s_ddot), (way, 0.0, 0.0), times)
+    return [_Firsts(pieces, times, np.zeros_like(times), False)]
+
+
+def _behind(start: FrenetState, goal: Goal, view: Ahead, front: float, settings: LatticeSettings) -> list[_Firsts]:
+    """To the time gap behind a leader who goes on: the change of speed that closes up exactly, and quintics in fixed times."""
+    leader = goal.follow
+    if leader is None or leader.speed <= settings.standing:
+        return []
+    speed = min(leader.speed, view.top)
+    way = leader.rear_station - front - settings.standstill_gap - settings.headway * leader.speed - start.s
+    times = np.array(settings.follow_times)
+    moved = way + leader.speed * times
+    found = [_Firsts(quintic((0.0, start.s_dot, start.s_ddot), (moved, speed, 0.0), times), times, np.full_like(times, speed), False)]
+    closing = float(change_time(way, start.s_dot - leader.speed, start.s_ddot, 0.0)) if start.s_dot > leader.speed else np.nan
+    if np.isfinite(closing):
+        pieces = change_speed(start.s_dot, start.s_ddot, [leader.speed], [closing])
+        found.append(_Firsts(pieces, np.array([closing]), np.array([leader.speed]), False))
+    return found
+
+
+def _laid_on(first: _Firsts, station: float, gates: tuple[Gate, ...], settings: LatticeSettings) -> Chains:
+    """First pieces, then for each gate: hold the speed, brake as nominal to reach the gate's speed at the gate; at last hold."""
+    pieces = first.pieces.copy()
+    pieces[:, 0] += station
+    time, speed = first.durations.copy(), first.end_speeds.copy()
+    way = station + _value(first.pieces, first.durations)
+    keep = np.ones(len(time), dtype=bool)
+    starts, chain = [np.zeros_like(time), time.copy()], [pieces, _held(way, speed)]
+    for gate in gates:
+        slows = speed > gate.speed + SAME_SPEED
+        left = gate.station - way
+        gain = np.where(slows, speed - gate.speed, 0.0)
+        nominal = np.maximum(1.5 * gain / settings.nominal, np.sqrt(6 * gain / settings.gentle_jerk))
+        mean = np.maximum((speed + gate.speed) / 2, SAME_SPEED)
+        held = np.where(slows, left - nominal * mean, 0.0)
+        squeezed = slows & (left < nominal * mean / SQUEEZE)
+        keep &= ~squeezed
+        duration = np.maximum(np.where(held < 0, np.maximum(left, 0.1) / mean, nominal), 0.1)
+        begin = time + np.where(slows, np.maximum(held, 0.0) / np.maximum(speed, SAME_SPEED), 0.0)
+        braking = change_speed(speed, 0.0, np.where(slows, gate.speed, speed), duration)
+        braking[:, 0] += np.where(slows, np.maximum(way, gate.station - duration * mean), way)
+        end = begin + np.where(slows, duration, 0.0)
+        way = np.where(slows, braking[:, 0] + change_way(duration, speed, 0.0, gate.speed), way)
+        speed, time = np.where(slows, gate.speed, speed), end
+        starts += [begin, end]
+        chain += [braking, _held(way, speed)]
+    if not first.free:
+        keep[:] = True
+    return Chains(np.stack(starts, axis=1)[keep], np.stack(chain, axis=1)[keep])
+
+
+def _held(station: Floats, speed: Floats) -> Floats:
+    pieces = np.zeros((len(station), 6))
+    pieces[:, 0], pieces[:, 1] = station, speed
+    return pieces
+
+
+def _value(pieces: Floats, time: Floats) -> Floats:
+    c = pieces.T
+    return np.asarray(c[0] + time * (c[1] + time * (c[2] + time * (c[3] + time * (c[4] + time * c[5])))))
