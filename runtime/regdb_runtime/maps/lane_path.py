@@ -27,11 +27,10 @@ SPEAKS_TO: dict[SignalDirection, frozenset[Turn]] = {
 
 @dataclass(frozen=True, slots=True)
 class JunctionReach:
-    """How far from a junction's entrance its stop line and crosswalk may stand, metres before it and within it."""
+    """How far before a junction's entrance (a crosswalk: also beyond its exit) what belongs to it may stand; how finely paths are sampled. Metres."""
 
     stop_line_before: float = 30.0
     crosswalk_before: float = 15.0
-    crosswalk_within: float = 8.0
     sample: float = 0.25
 
 
@@ -193,7 +192,8 @@ def _joined(centers: list[Floats]) -> tuple[Floats, list[int]]:
 def next_junction(road_map: RoadMap, lane_path: LanePath, station: float) -> Junction | None:
     """The first junction on the path that ends beyond a station (of the front bumper), None without one.
 
-    `stop_station` is where the limit line crosses the path, else where the crosswalk before the junction begins, else the entrance.
+    `stop_station` is where the limit line crosses the path, else where the crosswalk before the junction begins, else the entrance, and never
+    beyond the entrance.
     """
     known = lane_path.crossed.get(id(road_map))
     if known is None:
@@ -226,9 +226,9 @@ def _junction(road_map: RoadMap, lane_path: LanePath, name: str, first: int, las
     crosswalks = _crosswalks(road_map, lane_path, entrance - reach.crosswalk_before, leaving + reach.crosswalk_before, reach.sample)
     stop_station = entrance
     if line is not None:
-        stop_station = line[0]
-    elif crosswalks and crosswalks[0][0] <= entrance + reach.crosswalk_within:
-        stop_station = crosswalks[0][0]
+        stop_station = min(line[0], entrance)
+    elif crosswalks:
+        stop_station = min(crosswalks[0][0], entrance)
     lights = _lights(road_map, approach, line, turn)
     return Junction(
         name, stop_station, entrance, leaving, turn, _control(inner, approach, line), lights,

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import heapq
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
+from itertools import pairwise
 from typing import Literal
 
 from regdb_runtime.errors import NoRoute
@@ -114,9 +115,23 @@ def find_route(road_map: RoadMap, start_lane: str, goal_lane: str, settings: Rou
     NoRoute where none leads there or a lane is not on the map; ties are broken by id.
     """
     for lane in (start_lane, goal_lane):
-        if lane not in road_map.lanes:
-            raise NoRoute(f"lane {lane} is not on the map {road_map.source}".rstrip())
+        _on_map(road_map, lane)
     steps = _cheapest(road_map, start_lane, goal_lane, settings or RouteSettings())
+    return route_along(road_map, steps)
+
+
+def _on_map(road_map: RoadMap, lane: str) -> None:
+    if lane not in road_map.lanes:
+        raise NoRoute(f"lane {lane} is not on the map {road_map.source}".rstrip())
+
+
+def route_through(road_map: RoadMap, lanes: Sequence[str], settings: RouteSettings | None = None) -> Route:
+    """The cheapest route through lanes in their order, lane changes and lanes between them added where needed. NoRoute."""
+    for lane in lanes:
+        _on_map(road_map, lane)
+    steps = tuple(lanes[:1])
+    for before, lane in pairwise(lanes):
+        steps += _cheapest(road_map, before, lane, settings or RouteSettings())[1:]
     return route_along(road_map, steps)
 
 
