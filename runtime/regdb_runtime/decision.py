@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from typing import Literal
 
 from regdb_runtime.emergency import EmergencyReport
 from regdb_runtime.observation import TurnSignal
+from regdb_runtime.planning.cost import CostTerms as CostTerms
 from regdb_runtime.trajectory import Trajectory
 from regdb_runtime.verdict import Verdict
 
@@ -26,18 +26,6 @@ class Rejection:
     unit: str = ""
     count: int = 1
     because: str = ""
-
-
-@dataclass(frozen=True, slots=True)
-class CostTerms:
-    """C = [legal, safety, comfort, distance] before weighting, and the weighted total (paper, equation 1). `parts`: what safety and comfort consist of."""
-
-    legal: float
-    safety: float
-    comfort: float
-    distance: float
-    total: float
-    parts: Mapping[str, float] = field(default_factory=dict)
 
 
 @dataclass(frozen=True)

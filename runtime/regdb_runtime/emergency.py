@@ -19,6 +19,7 @@ from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
+from numpy.typing import NDArray
 
 from regdb_runtime.observation import EgoState, Footprint, Track
 from regdb_runtime.trajectory import Trajectory
@@ -255,7 +256,7 @@ def full_braking(ego: EgoState, settings: EmergencySettings) -> Trajectory:
     """Constant full braking from the present speed along the present arc, then standing for `plan_hold`; rows every `plan_step`."""
     braking, step = settings.full_braking, settings.plan_step
     stop = ego.speed / braking
-    time = np.arange(math.ceil((stop + settings.plan_hold) / step) + 1) * step
+    time: NDArray[np.float64] = np.arange(math.ceil((stop + settings.plan_hold) / step) + 1) * np.float64(step)
     moving = np.minimum(time, stop)
     station = ego.speed * moving - braking * moving * moving / 2
     speed = np.maximum(ego.speed - braking * time, 0.0)
@@ -263,7 +264,6 @@ def full_braking(ego: EgoState, settings: EmergencySettings) -> Trajectory:
     turn = ego.curvature * station
     chord = station * np.sinc(turn / (2 * math.pi))
     direction = ego.heading + turn / 2
-    return Trajectory(
-        np.asarray(time, dtype=np.float64), ego.x + chord * np.cos(direction), ego.y + chord * np.sin(direction), ego.heading + turn, speed, acceleration,
-        np.zeros_like(time), np.full_like(time, ego.curvature), station, np.zeros_like(time),
-    )  # fmt: skip
+    x, y = ego.x + chord * np.cos(direction), ego.y + chord * np.sin(direction)
+    nothing, bend = np.zeros_like(time), np.full_like(time, ego.curvature)
+    return Trajectory(time, x, y, ego.heading + turn, speed, acceleration, nothing, bend, station, nothing.copy())

@@ -22,9 +22,12 @@ def braking_distance(speed: Speed, braking: float) -> Speed:
 
 
 def responding_stop(speed: Speed, response_time: float, acceleration: float, braking: float) -> Speed:
-    """Distance to a stop: accelerating while responding, then constant braking (one side of the article's definitions)."""
+    """Distance to a stop: accelerating while responding, then constant braking (one side of the article's definitions).
+
+    Where the speed may be negative (lateral, away from the other) and still is after responding, nothing is left to brake.
+    """
     covered, reached = after_response(speed, response_time, acceleration)
-    return covered + braking_distance(reached, braking)
+    return covered + braking_distance((reached + abs(reached)) / 2, braking)
 
 
 def rss_longitudinal(

@@ -62,11 +62,16 @@ class Predictor(Protocol):
 
 
 class Path(Protocol):
-    """What a predicted road user follows: a reference path of the map."""
+    """What a predicted road user follows: a reference path of the map (`maps.reference_path.ReferencePath`)."""
 
-    def project(self, xy: Floats) -> tuple[Floats, Floats]: ...
+    @property
+    def start(self) -> float: ...
+    @property
+    def end(self) -> float: ...
+    def project(self, xy: Floats, extend: bool = False) -> tuple[Floats, Floats]: ...
     def to_plane(self, s: Floats, d: Floats) -> Floats: ...
     def heading(self, s: Floats) -> Floats: ...
+    def extended(self, before: float = 0.0, after: float = 0.0) -> Path: ...
 
 
 @dataclass(frozen=True, slots=True)
@@ -140,7 +145,7 @@ class IdmPrediction:
         """How far ahead and aside the other one is along the way of this one."""
         path = self.paths.get(own.id)
         if path is not None:
-            s, d = path.project(np.array([[own.x, own.y], [other.x, other.y]]))
+            s, d = path.project(np.array([[own.x, own.y], [other.x, other.y]]), extend=True)
             return float(s[1] - s[0]), float(d[1] - d[0])
         dx, dy = other.x - own.x, other.y - own.y
         cos, sin = math.cos(own.heading), math.sin(own.heading)
@@ -149,14 +154,15 @@ class IdmPrediction:
     def _drive(self, tracks: Sequence[Track], leaders: Sequence[tuple[int, float] | None], times: Floats) -> tuple[Floats, Floats]:
         """Ways and speeds (M, T): the model stepped for all together, then read at the instants asked for."""
         count = len(tracks)
-        grid = np.arange(math.ceil(float(times[-1]) / self.step - 1e-9) + 1) * self.step
+        grid: Floats = np.arange(math.ceil(float(times[-1]) / self.step - 1e-9) + 1) * np.float64(self.step)
         ways, speeds = np.zeros((count, len(grid))), np.zeros((count, len(grid)))
         speeds[:, 0] = [track.speed for track in tracks]
         wanted = np.array([self.desired_speeds.get(t.id, min(max(t.speed, 1e-3), self.parameters.desired_speed)) for t in tracks])
         driven = np.array([track.kind in DRIVEN for track in tracks], dtype=bool)
         lead = np.array([-1 if found is None else found[0] for found in leaders], dtype=np.int64)
         room = np.array([math.inf if found is None else found[1] for found in leaders])
-        toward = np.array([1.0 if found is None else math.cos(tracks[found[0]].heading - t.heading) for t, found in zip(tracks, leaders, strict=True)])
+        pairs = zip(tracks, leaders, strict=True)
+        toward = np.array([1.0 if found is None else math.cos(tracks[found[0]].heading - own.heading) for own, found in pairs])
         for now in range(len(grid) - 1):
             speed = speeds[:, now]
             gap = np.where(lead >= 0, room + toward * ways[lead, now] - ways[:, now], np.inf)
@@ -222,9 +228,10 @@ def _read(grid: Floats, rows: Floats, times: Floats) -> Floats:
 
 
 def _along_path(path: Path, track: Track, ways: Floats) -> tuple[Floats, Floats, Floats]:
-    """Middle and heading of a road user that keeps its offset from its path."""
-    s, d = path.project(np.array([[track.x, track.y]]))
+    """Middle and heading of a road user that keeps its offset from its path, straight on beyond the path's ends."""
+    s, d = path.project(np.array([[track.x, track.y]]), extend=True)
     stations = s[0] + ways
+    path = path.extended(max(0.0, path.start - float(stations[0])), max(0.0, float(stations[-1]) - path.end))
     plane = path.to_plane(stations, np.full_like(stations, d[0]))
     return plane[:, 0], plane[:, 1], path.heading(stations)
 
