@@ -25,7 +25,9 @@ SAME_OFFSET = 1e-3
 BLOCK = 4096
 """Points worked on at a time: a dozen arrays of this size stay in a core's own cache."""
 FIELDS = 9
-SCRATCH = 7
+SCRATCH = 6
+CLOSEST = 0.05
+"""Least 1 - curvature * offset that a plan may come to."""
 
 
 class Workspace:
@@ -61,25 +63,28 @@ def sample(
     path: ReferencePath, start: FrenetState, goal: Goal, footprint: Footprint | None = None, settings: LatticeSettings | None = None,
     workspace: Workspace | None = None,
 ) -> Candidates:
-    """All trajectories from a start state towards a goal: N = motions x changes of offset, motion by motion.
+    """All trajectories from a start state towards a goal: N = changes of offset x motions, change by change.
 
     Every one starts exactly in the start state; none goes backwards. Beyond its end the path is taken to go on straight. With a
     `workspace` the arrays are valid until its next use; without, they are the caller's own.
     """
     settings, footprint = settings or LatticeSettings(), footprint or Footprint()
     time = np.arange(settings.points) * settings.step
-    station, speed, acceleration = speed_profiles(start, goal, footprint.front, settings, time)
+    motions = speed_profiles(start, goal, footprint.front, settings, time)
     sides = _sides(start, goal, settings)
-    motions, changes, points = len(station), len(sides.lengths), len(time)
+    count, points = motions[0].shape
     workspace = workspace or Workspace()
-    room = workspace.fields(motions * changes, points)
-    reach = float(station.max()) if station.size else start.s
+    room = workspace.fields(len(sides.lengths) * count, points)
+    reach = float(motions[0].max()) if count else start.s
     table = path.tabulated if reach <= path.end else path.extended(after=reach - path.end + 1.0).tabulated
-    grid = room.reshape(FIELDS, motions, changes, points)
-    rows = max(1, BLOCK // (changes * points))
-    for begin in range(0, motions, rows):
-        part = slice(begin, begin + rows)
-        _in_plane(table, station[part], speed[part], acceleration[part], start.s, sides, grid[:, part], workspace)
+    whole = room.reshape(FIELDS, -1)
+    rows = max(1, BLOCK // points)
+    for first in range(0, count, rows):
+        station, speed, acceleration = (values[first : first + rows].ravel() for values in motions)
+        along = _Along.of(table, station, speed, acceleration, start.s)
+        for change in range(len(sides.lengths)):
+            begin = (change * count + first) * points
+            _in_plane(along, sides, change, whole[:, begin : begin + len(station)], workspace)
     _jerk(room[4], room[5], settings.step)
     return Candidates(time, *room)
 
@@ -98,19 +103,59 @@ def _sides(start: FrenetState, goal: Goal, settings: LatticeSettings) -> _Sides:
     return _Sides(lengths, quintic((start.d, start.slope * lengths, start.bend * lengths**2), (offsets, 0.0, 0.0), 1.0))
 
 
-def _in_plane(
-    table: PathTable, station: Floats, speed: Floats, acceleration: Floats, begin: float, sides: _Sides, out: Floats, workspace: Workspace
-) -> None:
-    """Writes x, y, heading, speed, acceleration, (jerk), curvature, station, offset (9, p, q, t) of motions (p, t) with changes (q,)."""
-    shape = out.shape[1:]
-    d, slope, bend, scale, stretch, square, work = workspace.parts(math.prod(shape)).reshape(SCRATCH, *shape)
-    _offsets(station, begin, sides, d, slope, bend, work)
-    x, y, cos, sin, heading, curvature, rate = (value[:, None] for value in _along(table, station))
-    np.multiply(d, sin, out=work)
-    np.subtract(x, work, out=out[0])
-    np.multiply(d, cos, out=work)
-    np.add(y, work, out=out[1])
-    np.multiply(d, curvature, out=scale)
+@dataclass(frozen=True, eq=False)
+class _Along:
+    """What depends on the station alone, for a block of motions (k,): way since the start, motion along the path, the path itself there."""
+
+    way: Floats
+    station: Floats
+    speed: Floats
+    square: Floats
+    acceleration: Floats
+    x: Floats
+    y: Floats
+    cos: Floats
+    sin: Floats
+    heading: Floats
+    curvature: Floats
+    rate: Floats
+
+    @classmethod
+    def of(cls, table: PathTable, station: Floats, speed: Floats, acceleration: Floats, begin: float) -> _Along:
+        """The path at stations, developed from the nearest entries of its table to third order."""
+        place = (station - table.first) / table.step
+        index = np.minimum(np.maximum(np.rint(place), 0), len(table.x) - 1).astype(np.intp)
+        step = (place - index) * table.step
+        x, y, cos, sin, heading, curvature, rate = (
+            values.take(index) for values in (table.x, table.y, table.cos, table.sin, table.heading, table.curvature, table.curvature_rate)
+        )
+        square = step * step
+        ahead = step - curvature * curvature * square * step / 6
+        aside = square * (curvature / 2 + rate * step / 6)
+        turn = step * (curvature + rate * step / 2)
+        bent_cos, bent_sin = 1.0 - turn * turn / 2, turn - turn * turn * turn / 6
+        return cls(
+            station - begin, station, speed, speed * speed, acceleration, x + ahead * cos - aside * sin, y + ahead * sin + aside * cos,
+            cos * bent_cos - sin * bent_sin, sin * bent_cos + cos * bent_sin, heading + turn, curvature + step * rate, rate,
+        )  # fmt: skip
+
+
+def _in_plane(along: _Along, sides: _Sides, change: int, out: Floats, workspace: Workspace) -> None:
+    """Writes x, y, heading, speed, acceleration, (jerk), curvature, station, offset (9, k) of a block of motions with one change of offset."""
+    x, y, heading, speed, acceleration, _, curvature, station, d = out
+    station[:] = along.station
+    pieces = sides.pieces[change]
+    if not pieces.any():
+        x[:], y[:], heading[:], speed[:], acceleration[:] = along.x, along.y, along.heading, along.speed, along.acceleration
+        curvature[:], d[:] = along.curvature, 0.0
+        return
+    slope, bend, scale, stretch, square, work = workspace.parts(len(x))
+    _offsets(along.way, pieces, float(sides.lengths[change]), (d, slope, bend), work)
+    np.multiply(d, along.sin, out=work)
+    np.subtract(along.x, work, out=x)
+    np.multiply(d, along.cos, out=work)
+    np.add(along.y, work, out=y)
+    np.multiply(d, along.curvature, out=scale)
     np.subtract(1.0, scale, out=scale)
     np.multiply(scale, scale, out=square)
     np.multiply(slope, slope, out=work)
@@ -118,62 +163,41 @@ def _in_plane(
     np.sqrt(square, out=stretch)
     np.divide(slope, scale, out=work)
     np.arctan(work, out=work)
-    np.add(heading, work, out=out[2])
-    np.multiply(stretch, speed[:, None], out=out[3])
-    out[7], out[8] = station[:, None], d
-    change = np.multiply(slope, curvature, out=work)  # -d(scale)/ds, from here on
-    np.multiply(d, rate, out=d)
-    np.add(change, d, out=change)
-    np.multiply(bend, scale, out=d)  # curvature: ((bend * scale + change * slope) / stretch^2 + curvature) / stretch
-    np.multiply(change, slope, out=out[6])
-    np.add(out[6], d, out=out[6])
-    np.divide(out[6], square, out=out[6])
-    np.add(out[6], curvature, out=out[6])
-    np.divide(out[6], stretch, out=out[6])
-    np.multiply(slope, bend, out=d)  # acceleration: s_ddot * stretch + s_dot^2 * (slope * bend - scale * change) / stretch
-    np.multiply(scale, change, out=change)
-    np.subtract(d, change, out=d)
-    np.divide(d, stretch, out=d)
-    np.multiply(d, (speed * speed)[:, None], out=d)
-    np.multiply(stretch, acceleration[:, None], out=stretch)
-    np.add(stretch, d, out=out[4])
+    np.add(along.heading, work, out=heading)
+    np.multiply(stretch, along.speed, out=speed)
+    np.multiply(slope, along.curvature, out=acceleration)  # change = -d(scale)/ds, kept here for a while
+    np.multiply(d, along.rate, out=work)
+    change_of_scale = np.add(acceleration, work, out=acceleration)
+    np.multiply(change_of_scale, slope, out=curvature)  # ((bend * scale + change * slope) / stretch^2 + path's curvature) / stretch
+    np.multiply(bend, scale, out=work)
+    np.add(curvature, work, out=curvature)
+    np.divide(curvature, square, out=curvature)
+    np.add(curvature, along.curvature, out=curvature)
+    np.divide(curvature, stretch, out=curvature)
+    np.multiply(scale, change_of_scale, out=work)  # s_ddot * stretch + s_dot^2 * (slope * bend - scale * change) / stretch
+    np.multiply(slope, bend, out=slope)
+    np.subtract(slope, work, out=slope)
+    np.divide(slope, stretch, out=slope)
+    np.multiply(slope, along.square, out=slope)
+    np.multiply(stretch, along.acceleration, out=acceleration)
+    np.add(acceleration, slope, out=acceleration)
+    if float(scale.min()) < CLOSEST:
+        curvature[scale < CLOSEST] = np.inf  # at the centre of the path's curvature or beyond it: nothing can drive there
 
 
-def _offsets(station: Floats, begin: float, sides: _Sides, d: Floats, slope: Floats, bend: Floats, part: Floats) -> None:
-    """Offset and its first and second derivative by station (p, q, t), held after the end of the change."""
-    np.multiply((station - begin)[:, None], (1.0 / sides.lengths)[:, None], out=part)
+def _offsets(way: Floats, pieces: Floats, length: float, out: tuple[Floats, Floats, Floats], part: Floats) -> None:
+    """Offset and its first and second derivative by station (k,), held after the end of the change."""
+    np.multiply(way, 1.0 / length, out=part)
     np.minimum(part, 1.0, out=part)
-    c = sides.pieces.T[:, :, None]
-    per_metre = (1.0 / sides.lengths)[:, None]
-    for out, factors in (
-        (d, (c[5], c[4], c[3], c[2], c[1], c[0])),
-        (slope, [factor * per_metre for factor in (5 * c[5], 4 * c[4], 3 * c[3], 2 * c[2], c[1])]),
-        (bend, [factor * per_metre**2 for factor in (20 * c[5], 12 * c[4], 6 * c[3], 2 * c[2])]),
-    ):
-        np.multiply(part, factors[0], out=out)
-        for factor in factors[1:-1]:
-            np.add(out, factor, out=out)
-            np.multiply(out, part, out=out)
-        np.add(out, factors[-1], out=out)
-
-
-def _along(table: PathTable, station: Floats) -> tuple[Floats, ...]:
-    """x, y, cos, sin, heading, curvature and its rate of the path at stations (p, t), developed from the nearest entries."""
-    place = (station - table.first) / table.step
-    index = np.clip(np.rint(place), 0, len(table.x) - 1).astype(np.intp)
-    step = (place - index) * table.step
-    x, y, cos, sin, heading, curvature, rate = (
-        values.take(index) for values in (table.x, table.y, table.cos, table.sin, table.heading, table.curvature, table.curvature_rate)
-    )
-    square = step * step
-    ahead = step - curvature * curvature * square * step / 6
-    aside = square * (curvature / 2 + rate * step / 6)
-    turn = step * (curvature + rate * step / 2)
-    bent_cos, bent_sin = 1.0 - turn * turn / 2, turn - turn * turn * turn / 6
-    return (
-        x + ahead * cos - aside * sin, y + ahead * sin + aside * cos, cos * bent_cos - sin * bent_sin, sin * bent_cos + cos * bent_sin,
-        heading + turn, curvature + step * rate, rate,
-    )  # fmt: skip
+    c = pieces.tolist()
+    first = [power * c[power] / length for power in range(1, 6)]
+    second = [power * (power - 1) * c[power] / length**2 for power in range(2, 6)]
+    for values, factors in zip(out, (c, first, second), strict=True):
+        np.multiply(part, factors[-1], out=values)
+        for factor in factors[-2:0:-1]:
+            values += factor
+            values *= part
+        values += factors[0]
 
 
 def _jerk(acceleration: Floats, jerk: Floats, step: float) -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 
@@ -14,7 +15,8 @@ class LatticeSettings:
     `speeds`: number of end speeds from 0 to the highest, besides the caps, the present speed and the leader's.
     `intensities`: greatest acceleration of the gentle changes of speed, m/s^2; `nominal` is that of braking to a cap or stop ahead, a tenth
     under the comfortable 2 m/s^2, so that the next plan has room. `hard`: of the braking kept ready for what comes late.
-    `gentle_jerk`, `hard_jerk`: of the gentle changes, m/s^3, a tenth under the comfortable 4.13, and of the hard. `shortest`: least duration of a change, s.
+    `gentle_jerk`, `hard_jerk`: of the gentle changes, m/s^3, a tenth under the comfortable 4.13, and of the hard.
+    `shortest`: least duration of a change, s.
     `stop_stretches`: durations of further ways to a stop point, as parts of that of the plainest one.
     `lateral_times`: shortest and longest time of a change of offset, s; `slowest`: speed (m/s) under which its length no longer shrinks.
     `lateral_grid`: metres; changes of offset end at multiples of a whole number of these, so that the next plan finds the same end again.
@@ -56,8 +58,9 @@ class VehicleLimits:
     `curvature` 0.2 1/m: 5 m at the rear axle, the turning circle; `curvature_rate` 0.4 1/m per second: 0.65 rad/s of steering at 2.8 m of
     wheelbase, as CommonRoad's vehicle 2 (BMW 320i) at 0.4 rad/s doubled for standing changes; `yaw_rate` 1.0 rad/s;
     `lateral_acceleration` 6 m/s^2: tyres with reserve for braking.
-    `settle`: seconds in which a start beyond a limit may come back within it. `recovery`: m/s^2 of braking that counts as doing what can be
-    done when a cap or stop comes too late to be kept.
+    `settle`: seconds in which a start beyond a limit may come back within it; `recovery`: braking, m/s^2, with which a speed already over a
+    cap must come down. `late`: braking, m/s^2, that counts as all that can be done for a cap or a stop seen too late; infinite: there is no
+    such excuse under these limits.
     """
 
     speed: float = 50.0
@@ -69,9 +72,10 @@ class VehicleLimits:
     yaw_rate: float = 1.0
     lateral_acceleration: float = 6.0
     settle: float = 0.5
-    recovery: float = 6.0
+    recovery: float = 1.0
+    late: float = 5.0
 
     @classmethod
     def comfortable(cls) -> VehicleLimits:
         """Normal driving: 2 m/s^2 and 4.13 m/s^3 along the path (the bounds of the speed figure), 2.5 m/s^2 aside."""
-        return cls(acceleration=2.0, braking=2.0, jerk=4.13, lateral_acceleration=2.5, yaw_rate=0.7, recovery=1.5)
+        return cls(acceleration=2.0, braking=2.0, jerk=4.13, lateral_acceleration=2.5, yaw_rate=0.7, late=math.inf)

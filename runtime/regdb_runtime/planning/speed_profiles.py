@@ -5,12 +5,13 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
-from regdb_runtime.planning.gates import SHAPE, Ahead, Gate, ahead
+from regdb_runtime.planning.gates import Ahead, Gate, ahead
 from regdb_runtime.planning.goal import Goal
 from regdb_runtime.planning.polynomials import Chains, Floats, change_speed, change_time, change_way, quintic
 from regdb_runtime.planning.settings import LatticeSettings
-from regdb_runtime.trajectory import STANDING, FrenetState
+from regdb_runtime.trajectory import FrenetState
 
 SAME_SPEED = 1e-6
 REVERSE = -1e-4
@@ -23,12 +24,17 @@ SQUEEZE = 1.02
 
 @dataclass(frozen=True, eq=False)
 class _Firsts:
-    """First pieces: coefficients (n, 6), durations and end speeds (n,), and whether one may be left out for braking too late."""
+    """First pieces: coefficients (n, 6), durations and end speeds (n,), and which may be left out for braking too late (n,)."""
 
     pieces: Floats
     durations: Floats
     end_speeds: Floats
-    free: bool
+    free: NDArray[np.bool_]
+
+    @classmethod
+    def to_keep(cls, pieces: Floats, durations: Floats, end_speeds: Floats) -> _Firsts:
+        """Such as are needed however late they brake afterwards."""
+        return cls(pieces, durations, end_speeds, np.zeros(len(durations), dtype=bool))
 
 
 def speed_profiles(
@@ -42,9 +48,9 @@ def speed_profiles(
     firsts = [_changes(start, goal, view, settings)]
     if not view.hold:
         firsts += [*_to_gates(start, view), *_to_stop(start, view, settings), *_behind(start, goal, view, front, settings)]
-    chains = [_laid_on(first, start.s, view.gates, settings) for first in firsts]
-    both = Chains(np.concatenate([chain.starts for chain in chains]), np.concatenate([chain.pieces for chain in chains]))
-    station, speed, acceleration = both.at(time)
+    each = ([getattr(first, name) for first in firsts] for name in ("pieces", "durations", "end_speeds", "free"))
+    chains = _laid_on(_Firsts(*(np.concatenate(values) for values in each)), start.s, view.gates, settings)
+    station, speed, acceleration = chains.at(time)
     forward = speed.min(axis=1) >= REVERSE
     station, speed, acceleration = station[forward], np.maximum(speed[forward], 0.0), acceleration[forward]
     return station, speed, acceleration
@@ -64,7 +70,7 @@ def _changes(start: FrenetState, goal: Goal, view: Ahead, settings: LatticeSetti
             times |= {_duration(gain, acceleration, peak, settings.hard_jerk, settings.shortest) for peak in settings.hard}
         pairs += [(target, time) for time in sorted(times)]
     targets, durations = np.array(pairs).T
-    return _Firsts(change_speed(speed, acceleration, targets, durations), durations, targets, True)
+    return _Firsts(change_speed(speed, acceleration, targets, durations), durations, targets, np.ones(len(durations), dtype=bool))
 
 
 def _targets(start: FrenetState, goal: Goal, view: Ahead, settings: LatticeSettings) -> list[float]:
@@ -101,7 +107,7 @@ def _to_gates(start: FrenetState, view: Ahead) -> list[_Firsts]:
     times = change_time(ways, start.s_dot, start.s_ddot, speeds)
     found = np.isfinite(times)
     pieces = change_speed(start.s_dot, start.s_ddot, speeds[found], times[found])
-    return [_Firsts(pieces, times[found], speeds[found], False)]
+    return [_Firsts.to_keep(pieces, times[found], speeds[found])]
 
 
 def _to_stop(start: FrenetState, view: Ahead, settings: LatticeSettings) -> list[_Firsts]:
@@ -116,7 +122,7 @@ def _to_stop(start: FrenetState, view: Ahead, settings: LatticeSettings) -> list
         peaks = np.array(settings.intensities)
         times = np.maximum(np.sqrt(QUINTIC_PEAKS[0] * way / peaks), np.cbrt(QUINTIC_PEAKS[1] * way / settings.gentle_jerk))
     pieces = quintic((0.0, start.s_dot, start.s_ddot), (way, 0.0, 0.0), times)
-    return [_Firsts(pieces, times, np.zeros_like(times), False)]
+    return [_Firsts.to_keep(pieces, times, np.zeros_like(times))]
 
 
 def _behind(start: FrenetState, goal: Goal, view: Ahead, front: float, settings: LatticeSettings) -> list[_Firsts]:
@@ -128,11 +134,11 @@ def _behind(start: FrenetState, goal: Goal, view: Ahead, front: float, settings:
     way = leader.rear_station - front - settings.standstill_gap - settings.headway * leader.speed - start.s
     times = np.array(settings.follow_times)
     moved = way + leader.speed * times
-    found = [_Firsts(quintic((0.0, start.s_dot, start.s_ddot), (moved, speed, 0.0), times), times, np.full_like(times, speed), False)]
+    found = [_Firsts.to_keep(quintic((0.0, start.s_dot, start.s_ddot), (moved, speed, 0.0), times), times, np.full_like(times, speed))]
     closing = float(change_time(way, start.s_dot - leader.speed, start.s_ddot, 0.0)) if start.s_dot > leader.speed else np.nan
     if np.isfinite(closing):
         pieces = change_speed(start.s_dot, start.s_ddot, [leader.speed], [closing])
-        found.append(_Firsts(pieces, np.array([closing]), np.array([leader.speed]), False))
+        found.append(_Firsts.to_keep(pieces, np.array([closing]), np.array([leader.speed])))
     return found
 
 
@@ -152,7 +158,7 @@ def _laid_on(first: _Firsts, station: float, gates: tuple[Gate, ...], settings: 
         mean = np.maximum((speed + gate.speed) / 2, SAME_SPEED)
         held = np.where(slows, left - nominal * mean, 0.0)
         squeezed = slows & (left < nominal * mean / SQUEEZE)
-        keep &= ~squeezed
+        keep &= ~(squeezed & first.free)
         duration = np.maximum(np.where(held < 0, np.maximum(left, 0.1) / mean, nominal), 0.1)
         begin = time + np.where(slows, np.maximum(held, 0.0) / np.maximum(speed, SAME_SPEED), 0.0)
         braking = change_speed(speed, 0.0, np.where(slows, gate.speed, speed), duration)
@@ -162,8 +168,6 @@ def _laid_on(first: _Firsts, station: float, gates: tuple[Gate, ...], settings: 
         speed, time = np.where(slows, gate.speed, speed), end
         starts += [begin, end]
         chain += [braking, _held(way, speed)]
-    if not first.free:
-        keep[:] = True
     return Chains(np.stack(starts, axis=1)[keep], np.stack(chain, axis=1)[keep])
 
 
