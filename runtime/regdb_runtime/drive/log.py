@@ -12,6 +12,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, TextIO
 
+import numpy as np
+
 from regdb_runtime.errors import LogError
 
 SCHEMA = "regdb-drive/1"
@@ -49,7 +51,9 @@ def line_of(record: Mapping[str, Any]) -> str:
 
 def plain(value: Any) -> Any:
     """A value as JSON holds it: numbers rounded to DIGITS, sets sorted, numpy's numbers as Python's, infinities as None."""
-    if value is None or isinstance(value, str | bool):
+    if isinstance(value, np.generic):
+        value = value.item()
+    if value is None or isinstance(value, str | bool | int):
         return value
     if isinstance(value, Mapping):
         return {str(key): plain(item) for key, item in value.items()}
@@ -57,8 +61,6 @@ def plain(value: Any) -> Any:
         return sorted(plain(item) for item in value)
     if isinstance(value, list | tuple):
         return [plain(item) for item in value]
-    if isinstance(value, int):
-        return value
     number = float(value)
     if not math.isfinite(number):
         return None

@@ -52,7 +52,7 @@ def _told(name: str, time: float, found: Measures) -> str:
     elif name == "back_in_lane" and found.clearance is not None:
         extra = f" ({found.clearance:.2f} m clear, {found.passes.replace('_', ' ')})"
     elif name == "released" and found.crosses:
-        extra = f" on {found.crosses}"
+        extra = f" ({found.crosses} light)"
     return f"{_EVENT_WORDS[name]}{extra} at {time:.1f} s"
 
 
