@@ -1,0 +1,34 @@
+"""What assessing one manoeuvre finds: the plan to drive, its rank and verdict, and why others fell out."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Final
+
+from regdb.meaning import ILLEGAL, LEGAL, UNKNOWN
+from regdb_runtime.decision import Rejection
+from regdb_runtime.verdict import Verdict
+
+LAWFUL, UNCERTAIN, UNLAWFUL, NO_PLAN = 0, 1, 2, 3
+RANKS: Final = {LEGAL: LAWFUL, UNKNOWN: UNCERTAIN, ILLEGAL: UNLAWFUL}
+Violation = tuple[float, int, float]
+"""Less is better: minus the place of the gravest topic broken, how many rules are broken, and by how much (as a share of the limit)."""
+NONE_BROKEN: Final[Violation] = (-float("inf"), 0, 0.0)
+
+
+@dataclass(frozen=True)
+class Assessed:
+    """The best plan of one manoeuvre by (rank, violation, cost), among those that keep the kinematic limits and touch nobody.
+
+    `index` is its row of the candidates, None without one: then `rank` is 3, and `verdict` that of the cheapest plan that was judged. `verdict`
+    is the worst of the stretches the plan crosses (of equally bad ones the first), `verdicts` all of them in order. `violation` is compared
+    between unlawful plans only. `judged`: how many plans were judged.
+    """
+
+    index: int | None
+    rank: int
+    verdict: Verdict | None
+    rejections: tuple[Rejection, ...] = ()
+    verdicts: tuple[Verdict, ...] = ()
+    violation: Violation = NONE_BROKEN
+    judged: int = 0

@@ -1,0 +1,99 @@
+"""Speed limits along a path before anything is sampled: the law's, those it may impose, and what the interpretation calls safe."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+
+from regdb.condition import linear_value
+from regdb.interpretation import Interpretation
+from regdb.meaning import UNKNOWN, Judgement
+from regdb.regulation import NO_LIMIT_IN_FORCE, Regulation
+from regdb.situation import Plan, Situation
+from regdb.vocabulary import Value
+from regdb_runtime.assessment.judged_facts import decided_by
+from regdb_runtime.assessment.settings import AssessmentSettings
+from regdb_runtime.maneuver import Maneuver
+from regdb_runtime.planning.goal import SpeedCap
+from regdb_runtime.scenes.stretch import Stretch
+from regdb_runtime.verdict import Verdict
+
+SPEED = "plan.speed"
+Cap = tuple[float, str]
+"""A speed (m/s) and what asks for it."""
+
+
+class Caps:
+    """Finds what binds the speed on each stretch."""
+
+    def __init__(self, settings: AssessmentSettings, profile: Interpretation | None) -> None:
+        self.settings, self.profile = settings, profile
+
+    def of(self, maneuver: Maneuver, stretches: Sequence[Stretch], shared: Mapping[str, Value]) -> tuple[SpeedCap, ...]:
+        """The caps along the path; neighbouring stretches with the same one are joined. Stretches without limit have none."""
+        found: list[SpeedCap] = []
+        for stretch in stretches:
+            cap = self._strictest(maneuver, stretch, shared)
+            if cap is None:
+                continue
+            speed, rule = max(cap[0] - self.settings.cap_margin, 0.0), cap[1]
+            held = found[-1] if found else None
+            if held is not None and held.end == stretch.start and held.speed == speed and held.rule == rule:
+                found[-1] = SpeedCap(held.start, stretch.end, speed, rule)
+            else:
+                found.append(SpeedCap(stretch.start, stretch.end, speed, rule))
+        return tuple(found)
+
+    def _strictest(self, maneuver: Maneuver, stretch: Stretch, shared: Mapping[str, Value]) -> Cap | None:
+        facts: dict[str, Value] = {**stretch.roles, **shared, SPEED: 0.0}
+        verdict = stretch.view.judge(stretch.prepared, Plan(maneuver.current, maneuver.next, facts))
+        found = [(item.bound, item.regulation.citation) for item in verdict.limits if _caps_speed(item.limit.fact, item.limit.direction)]
+        seen = self._seen_clear(stretch)
+        found += [seen] if seen is not None else []
+        least = min((bound for bound, _ in found), default=math.inf)
+        found += self._possible(maneuver, stretch, facts, least)
+        return min(found, default=None)
+
+    def _possible(self, maneuver: Maneuver, stretch: Stretch, facts: dict[str, Value], bound: float) -> list[Cap]:
+        """Limits below a bound that rules impose if something not known should hold: at the bound, their breach is not known."""
+        at_bound = {**facts, SPEED: min(bound, _FASTER_THAN_ANY_LIMIT)}
+        verdict = stretch.view.judge(stretch.prepared, Plan(maneuver.current, maneuver.next, at_bound))
+        if verdict.verdict == UNKNOWN:
+            return _bounds(verdict.deciding, verdict)
+        return _bounds(_undecided(verdict), verdict) if verdict.deciding and verdict.verdict != "legal" else []
+
+    def _seen_clear(self, stretch: Stretch) -> Cap | None:
+        """The speed from which the vehicle can stop within the road seen to be clear, where the profile asks it."""
+        decision = decided_by(self.profile, "speed.unsafe_for_conditions")
+        if decision is None or decision.formula != "stop_in_sight":
+            return None
+        sight = stretch.measures.get("speed.unsafe_for_conditions", {}).get("sight_distance", self.settings.sensing_range)
+        response, braking = decision.parameters["response_time"].si, decision.parameters["min_braking"].si
+        speed = braking * (math.sqrt(response * response + 2.0 * sight / braking) - response)
+        return speed, f"{self.profile.name}: {decision.because}" if self.profile is not None else ""
+
+
+_FASTER_THAN_ANY_LIMIT = 100.0
+"""m/s at which every limit of a road is broken."""
+
+
+def _caps_speed(fact: str, direction: str) -> bool:
+    return fact == SPEED and direction == "max"
+
+
+def _undecided(verdict: Verdict) -> list[Regulation]:
+    """Rules with a limit on speed whose effect is not known, by the reference: a verdict that is unlawful anyway does not name them."""
+    judgement: Judgement = verdict.judgement
+    limiting = [rule for rule in judgement.concerned if any(_caps_speed(limit.fact, limit.direction) for limit in rule.limits)]
+    return [rule for rule in limiting if judgement.effective(rule) is None]
+
+
+def _bounds(rules: Sequence[Regulation], verdict: Verdict) -> list[Cap]:
+    situation = Situation(verdict.circumstances.vocabulary, verdict.scene, verdict.plan)
+    found = []
+    for rule in rules:
+        for limit in rule.limits if not rule.legality and rule.force not in NO_LIMIT_IN_FORCE else ():
+            bound = linear_value(limit.bound, situation) if _caps_speed(limit.fact, limit.direction) else None
+            if bound is not None:
+                found.append((bound, f"{rule.citation} (may apply)"))
+    return found

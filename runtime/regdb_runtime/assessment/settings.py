@@ -1,0 +1,45 @@
+"""Numbers of the assessment: how finely plans are measured, what counts as slowing, and which violations are the lesser ones."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+GRAVEST_FIRST: tuple[str, ...] = (
+    "red-signal", "signal-stop", "flashing-signal", "rail-crossing-stop", "rail-crossing-stop-classes", "school-bus", "stop-sign",
+    "pedestrian-crosswalk", "blind-pedestrian", "pedestrian-due-care", "sidewalk", "passing-bicycle", "emergency-vehicle-yield",
+    "stop-sign-right-of-way", "intersection-right-of-way", "left-turn-yield", "yield-sign", "one-way", "drive-right", "divided-highway",
+    "pass-clear-view", "pass-left", "pass-on-right", "lane-use", "turn-safely", "double-lines", "follow-too-closely", "move-over",
+    "basic-speed", "maximum-speed", "prima-facie-limits", "school-bands", "local-speed-zones",
+)  # fmt: skip
+"""Topics of the law (as sections name them), what endangers others most before the rest; a topic that is not here comes after all of them."""
+
+
+@dataclass(frozen=True, slots=True)
+class AssessmentSettings:
+    """How plans are measured and ranked; SI. All of it design, none of it law."""
+
+    decimals: int = 6
+    """Measured numbers are rounded to a micrometre (per second): less than any rounding of the sampler's, more than floating point's."""
+    line_tolerance: float = 0.01
+    """Metres past a line or over a marking that still count as on it; below the 0.02 m that the strategist keeps to a lane's boundary."""
+    standstill: float = 0.1
+    """m/s below which the vehicle stands (the plateau of the paper's figure)."""
+    slows_by: float = 0.5
+    """m/s below the present speed from which a plan reduces speed; the resolution of a speedometer."""
+    sudden_braking: float = 3.4
+    """m/s2 from which braking is sudden: what AASHTO takes most drivers to find comfortable on wet roads (stopping sight distance)."""
+    sensing_range: float = 100.0
+    """Metres of road ahead taken to be seen where nothing says less; the range within which the vocabulary lets perception be relied on."""
+    passing_range: float = 6.0
+    """Metres edge to edge beyond which going by somebody is no overtaking of him: more than a lane and a half."""
+    recovery: float = 0.2
+    """m/s by which a gap that is already too small must grow until the plan ends, unless the vehicle all but stands."""
+    cap_margin: float = 0.05
+    """m/s that caps stay below the law's limit: what following a plan may add (a tenth of a mile an hour)."""
+    claims_no_room: bool = False
+    """Whether plans claim that no path leaves the clearance the law asks. The claim opens an exception (CVC 21760(d)); waiting behind needs none."""
+    least_violation: tuple[str, ...] = field(default=GRAVEST_FIRST)
+    """Topics from the gravest; where nothing is lawful the plan that breaks the less grave ones is taken, then the one less beyond its limit."""
+    first_batch: int = 1
+    batch_growth: int = 8
+    """Plans are judged in the order of cost, first this many at once, then so many times more: mostly the cheapest is lawful."""
