@@ -33,7 +33,9 @@ def made_track(x: float, y: float, clearance: float, name: str = "cyclist", kind
     return {"id": name, "kind": kind, "x": x, "y": y, "heading": 0.0, "speed": 4.5, "length": 1.8, "width": 0.6, "clearance": clearance}
 
 
-def made_log(ticks: Sequence[Record], *, stop_lines: Sequence[float] = (), zones: Sequence[tuple[float, float]] = (), ended: str = "destination") -> Log:
+def made_log(
+    ticks: Sequence[Record], *, stop_lines: Sequence[float] = (), zones: Sequence[tuple[float, float]] = (), ended: str = "destination"
+) -> Log:
     """A log of ticks on a lane 3.5 m wide and 1,000 m long."""
     run = {
         "kind": "run", "schema": SCHEMA, "variant": "made", "provenance": "scripted", "world": "none", "length": 1000.0,

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from made_logs import MPH, driven, made_log, made_tick, made_track
-
 from regdb_runtime.drive.events import events_of
 from regdb_runtime.drive.expected import shortfalls
 from regdb_runtime.drive.log import Log
