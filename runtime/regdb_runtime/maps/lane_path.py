@@ -222,14 +222,14 @@ def _junction(road_map: RoadMap, lane_path: LanePath, name: str, first: int, las
     turns = [lane.turn for lane in (road_map.lanes[span.lane] for span in spans[first : last + 1]) if lane.turn not in (None, "straight")]
     turn: Turn = turns[0] or "straight" if turns else "straight"
     approach = road_map.lanes[spans[first - 1].lane] if first else None
-    line = _stop_line(road_map, lane_path, first, reach)
+    line = _stop_line(road_map, lane_path, first, reach) or _line_within(road_map, lane_path, first)
     crosswalks = _crosswalks(road_map, lane_path, entrance - reach.crosswalk_before, leaving + reach.crosswalk_before, reach.sample)
     stop_station = entrance
     if line is not None:
         stop_station = min(line[0], entrance)
     elif crosswalks:
         stop_station = min(crosswalks[0][0], entrance)
-    lights = _lights(road_map, approach, line, turn)
+    lights = _lights(road_map, approach, inner, line, turn)
     return Junction(
         name, stop_station, entrance, leaving, turn, _control(inner, approach, line), lights,
         tuple(crosswalk for _, crosswalk in crosswalks), line is not None and line[1].marked,
@@ -245,6 +245,13 @@ def _stop_line(road_map: RoadMap, lane_path: LanePath, first: int, reach: Juncti
         if lane.stop_line is not None:
             return _line_station(lane_path, span, lane, lane.stop_line), lane.stop_line
     return None
+
+
+def _line_within(road_map: RoadMap, lane_path: LanePath, first: int) -> tuple[float, StopLine] | None:
+    """A stop line that the map gives to the lane within the junction, as some Lanelet2 maps do."""
+    span = lane_path.spans[first]
+    lane = road_map.lanes[span.lane]
+    return None if lane.stop_line is None else (_line_station(lane_path, span, lane, lane.stop_line), lane.stop_line)
 
 
 def _line_station(lane_path: LanePath, span: LaneSpan, lane: Lane, line: StopLine) -> float:
@@ -268,9 +275,9 @@ def _crosswalks(road_map: RoadMap, lane_path: LanePath, start: float, end: float
     return sorted((float(at[int(np.argmax(within))]), name) for name, within in hits if within.any())
 
 
-def _lights(road_map: RoadMap, approach: Lane | None, line: tuple[float, StopLine] | None, turn: Turn) -> tuple[str, ...]:
-    """The lights of the approach that speak to a turn."""
-    carried = (*(approach.lights if approach else ()), *(line[1].lights if line else ()))
+def _lights(road_map: RoadMap, approach: Lane | None, inner: Lane, line: tuple[float, StopLine] | None, turn: Turn) -> tuple[str, ...]:
+    """The lights of the approach, the stop line and the lane within that speak to a turn."""
+    carried = (*(approach.lights if approach else ()), *(line[1].lights if line else ()), *inner.lights)
     return tuple(name for name in dict.fromkeys(carried) if turn in SPEAKS_TO[road_map.lights[name].direction])
 
 

@@ -140,7 +140,7 @@ def _linked(lanes: Mapping[str, Lane], links: list[Link]) -> dict[str, Lane]:
 def _with_junctions(
     root: XmlNode, lanes: Mapping[str, Lane], edges: Mapping[str, _Edge], links: list[Link]
 ) -> tuple[dict[str, Lane], dict[str, RoadJunction]]:
-    """Lanes within a junction with its id, their turn and control. A node with less than three arms, or where all only merge or fork, is none."""
+    """Lanes within a junction with its id, their turn and control. A node without a signal that has less than three arms, or where all only merge or fork, is none."""
     entered = {link.via: link for link in links if link.via is not None and edges[link.edge].function == "normal"}
     found, junctions = dict(lanes), {}
     for node in root.all("junction"):
@@ -150,7 +150,7 @@ def _with_junctions(
         inner = [lane for edge in edges.values() if edge.function == "internal" and edge.id[1:].rpartition("_")[0] == name for lane in _names(edge)]
         ways = [entered[lane] for lane in inner if lane in entered]
         arms = {edge.start for edge in edges.values() if edge.end == name} | {edge.end for edge in edges.values() if edge.start == name}
-        if len(arms) < 3 or not any(way.signal or way.direction not in "s" for way in ways):
+        if not any(way.signal for way in ways) and (len(arms) < 3 or all(way.direction == "s" for way in ways)):
             continue
         for lane in inner:
             way = _entry(lane, lanes, entered)
