@@ -43,7 +43,7 @@ def middle_line(start: Pose, pieces: Iterable[Piece], step: float = 2.0) -> tupl
 
 def aside(points: Floats, headings: Floats, offset: float | Floats) -> Floats:
     """Points (n, 2) `offset` metres to the left of a line (to the right when negative)."""
-    return points + np.column_stack([-np.sin(headings), np.cos(headings)]) * np.reshape(offset, (-1, 1))
+    return np.asarray(points + np.column_stack([-np.sin(headings), np.cos(headings)]) * np.reshape(offset, (-1, 1)))
 
 
 def connection(start: tuple[float, float, float], end: tuple[float, float, float], step: float = 0.5) -> tuple[Floats, Floats]:

@@ -21,6 +21,7 @@ LINE_BEFORE_CROSSWALK = 1.22
 LINE_BEFORE_END = 0.6
 """From a limit line to the road's end where there is no crosswalk, metres."""
 _CONTROL_FACT: dict[Control, str] = {"signal": "signal", "stop": "stop_ego", "all_way_stop": "stop_all", "yield": "yield_ego", "none": "none"}
+TURNS: tuple[Turn, ...] = ("left", "straight", "right")
 _STRAIGHT_WITHIN = math.radians(45)
 _U_TURN_BEYOND = math.radians(150)
 
@@ -81,7 +82,7 @@ def build_junctions(streets: Streets) -> tuple[dict[str, Light], tuple[Crosswalk
 
 
 def _approach(streets: Streets, spec: JunctionSpec, arm: Arm) -> Approach:
-    forward, backward = streets.carriageway(arm.road, False), streets.carriageway(arm.road, True)
+    forward, backward = streets.carriageway(arm.road, backward=False), streets.carriageway(arm.road, backward=True)
     incoming, outgoing = (forward, backward) if arm.end == "end" else (backward, forward)
     return Approach(arm, arm.control or spec.control, incoming, outgoing)
 
@@ -95,7 +96,7 @@ def _lay_approach(streets: Streets, spec: JunctionSpec, approaches: list[Approac
     lights.update(heads)
     signs = _signs(streets, spec, approach)
     facts = _facts(spec, approaches, index, movements)
-    by_turn: dict[str, tuple[str, ...]] = {turn: tuple(i for i, light in heads.items() if speaks_to(light, turn)) for turn in ("left", "straight", "right")}
+    by_turn: dict[str, tuple[str, ...]] = {turn: tuple(i for i, light in heads.items() if speaks_to(light, turn)) for turn in TURNS}
     for number, lane in enumerate(incoming.lanes, 1):
         own = [item for item in movements if item.from_lane == number]
         told = tuple(dict.fromkeys(light for item in own for light in by_turn[item.turn]))
@@ -103,9 +104,9 @@ def _lay_approach(streets: Streets, spec: JunctionSpec, approaches: list[Approac
     for movement in movements:
         exit_side = approaches[movement.exit].outgoing
         assert exit_side is not None
-        number = f".{movement.from_lane}" if movement.turn == "straight" else ""
+        suffix = f".{movement.from_lane}" if movement.turn == "straight" else ""
         twin = sum(1 for item in movements if (item.turn, item.from_lane) == (movement.turn, movement.from_lane) and item.exit < movement.exit)
-        lane_id = f"{spec.id}.{compass(approach.heading)}.{movement.turn}{number}" + (f".{exit_side.road.id}" if twin else "")
+        lane_id = f"{spec.id}.{compass(approach.heading)}.{movement.turn}{suffix}" + (f".{exit_side.road.id}" if twin else "")
         _connect(
             streets, lane_id, spec.id, incoming.lanes[movement.from_lane - 1], exit_side.lanes[movement.to_lane - 1], movement.turn,
             by_turn[movement.turn], facts,
@@ -165,15 +166,17 @@ def _facts(spec: JunctionSpec, approaches: list[Approach], index: int, movements
 def _heads(spec: JunctionSpec, approach: Approach, approaches: list[Approach]) -> dict[str, Light]:
     """The lights of one arm: arrow heads for the turns that have one, a circular head for the rest, on the far side of the junction."""
     name, arrows = compass(approach.heading), approach.arm.arrows
-    rest = [turn for turn in ("left", "straight", "right") if turn not in arrows]
+    rest: list[Turn] = [turn for turn in TURNS if turn not in arrows]
     found: dict[str, Light] = {}
     for place, turn in enumerate(arrows):
         key = f"{name}.{turn}"
         found[f"{spec.id}.{key}.light"] = Light(
-            f"{spec.id}.{key}.light", _head_position(approach, approaches, place + 1), _direction([turn]), True, cycle(spec, key), spec.offset, True)
+            f"{spec.id}.{key}.light", _head_position(approach, approaches, place + 1), _direction([turn]),
+            cycle=cycle(spec, key), offset=spec.offset, arrow=True,
+        )  # fmt: skip
     if rest:
         position = _head_position(approach, approaches, 0)
-        found[f"{spec.id}.{name}.light"] = Light(f"{spec.id}.{name}.light", position, _direction(rest), True, cycle(spec, name), spec.offset)
+        found[f"{spec.id}.{name}.light"] = Light(f"{spec.id}.{name}.light", position, _direction(rest), cycle=cycle(spec, name), offset=spec.offset)
     return found
 
 
@@ -249,7 +252,7 @@ def _finish_lane(streets: Streets, lane_id: str, approach: Approach, lights: tup
     if approach.control != "none" and approach.arm.stop_line:
         back = CROSSWALK[0] + LINE_BEFORE_CROSSWALK if approach.arm.crosswalk else LINE_BEFORE_END
         left, right = _back_from_end(lane.left_line, back), _back_from_end(lane.right_line, back)
-        line = StopLine(f"{lane_id}.stop_line", left, right, True, lights, signs)
+        line = StopLine(f"{lane_id}.stop_line", left, right, marked=True, lights=lights, signs=signs)
     facts: dict[str, Value] = {**lane.facts, "lane.turns": turns} if turns else dict(lane.facts)
     streets.lanes[lane_id] = replace(lane, stop_line=line, lights=lights, signs=(*lane.signs, *signs), facts=facts)
 
@@ -265,7 +268,7 @@ def _connect(
 ) -> None:
     """Lay the lane of one movement from the end of one lane to the beginning of another."""
     before, after = streets.lanes[before_id], streets.lanes[after_id]
-    points, headings = connection(_end_pose(before.center, True), _end_pose(after.center, False))
+    points, headings = connection(_end_pose(before.center, last=True), _end_pose(after.center, last=False))
     along = np.linspace(0.0, 1.0, len(points))
     half = (before.widths[-1] + (after.widths[0] - before.widths[-1]) * along) / 2
     width = {"lane.width": float(2 * half.min())}
@@ -291,7 +294,7 @@ def _connect_bicycles(
             _connect(streets, lane_id, spec.id, approach.incoming.bicycle, other.outgoing.bicycle, "straight", lights, facts)
 
 
-def _end_pose(line: Floats, last: bool) -> tuple[float, float, float]:
+def _end_pose(line: Floats, *, last: bool) -> tuple[float, float, float]:
     step = line[-1] - line[-2] if last else line[1] - line[0]
     x, y = line[-1] if last else line[0]
     return float(x), float(y), math.atan2(float(step[1]), float(step[0]))

@@ -18,7 +18,7 @@ from regdb_runtime.worlds.streets import Streets, join_ends, place_on
 
 def build_sign(streets: Streets, spec: SignSpec) -> Sign:
     """A sign at the kerb of its direction, bound to that direction's lanes."""
-    side = streets.carriageway(spec.road, spec.direction == "backward")
+    side = streets.carriageway(spec.road, backward=spec.direction == "backward")
     if side is None:
         raise WorldError(f"sign {spec.id!r}: road {spec.road!r} has no {spec.direction} lanes")
     reach = side.width + 0.8
@@ -39,7 +39,7 @@ def build_zone(streets: Streets, spec: ZoneSpec) -> Zone:
 
 
 def _along(streets: Streets, spec: ZoneSpec) -> Floats:
-    sides = [streets.carriageway(spec.road, backward) for backward in (False, True)]
+    sides = [streets.carriageway(spec.road, backward=backward) for backward in (False, True)]
     right, left = (0.0 if side is None else side.width for side in sides)
     stations = np.linspace(spec.start, spec.end, max(2, math.ceil((spec.end - spec.start) / 5) + 1))
     outer = [place_on(streets, spec.road, float(at), -right - spec.margin) for at in stations]
@@ -85,7 +85,8 @@ def follow_turns(road_map: RoadMap, lane: str, turns: tuple[Turn, ...], most: in
         turn = wanted.pop(0) if wanted else None
         fitting = [item for item in inner if road_map.lanes[item[1]].turn == (turn or "straight")]
         if turn is not None and not fitting:
-            raise WorldError(f"no lane beside {route[-1]!r} turns {turn}; there is: {', '.join(sorted({str(road_map.lanes[item[1]].turn) for item in inner}))}")
+            offered = sorted({str(road_map.lanes[name].turn) for _, name in inner})
+            raise WorldError(f"no lane beside {route[-1]!r} turns {turn}; there is: {', '.join(offered)}")
         place, following = (fitting or inner)[0]
         if following in route:
             break

@@ -43,7 +43,7 @@ class RoadSpec:
 
     id: str
     pieces: tuple[Piece, ...]
-    start: Pose = Pose()
+    start: Pose = field(default_factory=Pose)
     forward: int = 1
     backward: int = 1
     width: float = 3.5

@@ -18,7 +18,7 @@ class EgoSpec:
     """The ego: its lane, the station of its rear axle on it (metres), speed (m/s), and how its route turns at each junction in order.
 
     After the last of `turns` the route goes straight on (else the first way that offers itself) to the end of the map. `offset` metres left
-    of the lane's middle. `reaction` none: the ego follows its plan at once.
+    of the lane's middle.
     """
 
     lane: str
@@ -26,7 +26,7 @@ class EgoSpec:
     speed: float = 0.0
     turns: tuple[Turn, ...] = ()
     offset: float = 0.0
-    footprint: Footprint = Footprint()
+    footprint: Footprint = field(default_factory=Footprint)
 
 
 @dataclass(frozen=True)

@@ -17,7 +17,8 @@ from regdb_runtime.worlds.road_spec import RoadEnd, RoadSpec, StreetsSpec
 COMPASS = ("e", "ne", "n", "nw", "w", "sw", "s", "se")
 _SEEN_FROM_THE_OTHER_SIDE: Mapping[Marking, Marking] = {"solid_dashed": "dashed_solid", "dashed_solid": "solid_dashed"}
 _CENTER_FACT: Mapping[Marking, str] = {
-    "none": "none", "dashed": "broken_yellow", "double_solid": "double_solid_yellow", "solid_dashed": "solid_on_right", "dashed_solid": "solid_on_left",
+    "none": "none", "dashed": "broken_yellow", "double_solid": "double_solid_yellow",
+    "solid_dashed": "solid_on_right", "dashed_solid": "solid_on_left",
 }  # fmt: skip
 
 
@@ -64,7 +65,7 @@ class Streets:
                 raise WorldError(f"there are two roads {road.id!r}")
             self._lay(road)
 
-    def carriageway(self, road: str, backward: bool) -> Carriageway | None:
+    def carriageway(self, road: str, *, backward: bool) -> Carriageway | None:
         """A road's one direction, None where it is one-way the other way. Raises WorldError for a road that is not there."""
         if road not in self.middles:
             raise WorldError(f"there is no road {road!r}; roads: {', '.join(self.middles)}")
@@ -95,23 +96,23 @@ class Streets:
         self.middles[road.id] = points, headings
         sides = []
         if road.forward:
-            sides.append(_carriageway(road, False, points, headings))
+            sides.append(_carriageway(road, points, headings, backward=False))
         if road.backward:
-            sides.append(_carriageway(road, True, points[::-1], headings[::-1] + math.pi))
+            sides.append(_carriageway(road, points[::-1], headings[::-1] + math.pi, backward=True))
         self.carriageways.extend(sides)
         for side in sides:
             other = next((item for item in sides if item is not side), None)
             self.lanes.update(_lanes(side, other, self.read(road.facts, f"road {road.id}")))
 
 
-def _carriageway(road: RoadSpec, backward: bool, line: Floats, headings: Floats) -> Carriageway:
+def _carriageway(road: RoadSpec, line: Floats, headings: Floats, *, backward: bool) -> Carriageway:
     stem = f"{road.id}.{compass(float(headings[0]))}"
     count = road.backward if backward else road.forward
     lanes = tuple(f"{stem}.{number}" for number in range(1, count + 1))
     return Carriageway(road, backward, line, headings, lanes, f"{stem}.bike" if road.bicycle_lane else None)
 
 
-def _lanes(side: Carriageway, other: Carriageway | None, own_facts: Mapping[str, Value]) -> dict[str, Lane]:
+def _lanes(side: Carriageway, other: Carriageway | None, own_facts: dict[str, Value]) -> dict[str, Lane]:
     """All lanes of one direction, from the kerb to the middle."""
     road, count, width = side.road, len(side.lanes), side.road.width
     shared = _road_facts(side, other) | own_facts
@@ -172,7 +173,8 @@ def _road_facts(side: Carriageway, other: Carriageway | None) -> dict[str, Value
     divided = road.center == "curb" and other is not None
     types = {"highway"} | ({"two_lane_undivided"} if lanes == 2 and other is not None and not divided else set())
     return {
-        "road.lanes": float(lanes), "road.lanes_same_direction": float(len(side.lanes)), "road.one_way": other is None, "road.two_way": other is not None,
+        "road.lanes": float(lanes), "road.lanes_same_direction": float(len(side.lanes)),
+        "road.one_way": other is None, "road.two_way": other is not None,
         "road.width": side.width + (0.0 if other is None or divided else other.width), "road.types": frozenset(types), "road.divided": divided,
         "lane.center_marking": "none" if other is None or divided else _CENTER_FACT.get(_center(road, side.backward), "other"),
         "bicycle_lane.present": road.bicycle_lane > 0.0, "lane.kind": "general",
@@ -196,7 +198,7 @@ def join_ends(streets: Streets, at_junctions: frozenset[tuple[str, RoadEnd]]) ->
 
 def place_on(streets: Streets, road: str, station: float, offset: float = 0.0) -> tuple[float, float]:
     """The point (x, y) at a station of a road's middle line, `offset` metres to the left of it. Raises WorldError beyond its ends."""
-    streets.carriageway(road, False)
+    streets.carriageway(road, backward=False)
     points, headings = streets.middles[road]
     stations = np.concatenate(([0.0], np.cumsum(np.hypot(*np.diff(points, axis=0).T))))
     if not -1e-6 <= station <= stations[-1] + 0.5:

@@ -48,8 +48,9 @@ def find_contacts(time: float, ego: EgoState, footprint: Footprint, tracks: Sequ
 
 
 def _contact(time: float, ego: EgoState, center: tuple[float, float], footprint: Footprint, track: Track) -> Contact:
-    part = _part((center[0], center[1], ego.heading, footprint.length, footprint.width), (track.x, track.y, track.heading, track.length, track.width))
-    other_part = _part((track.x, track.y, track.heading, track.length, track.width), (center[0], center[1], ego.heading, footprint.length, footprint.width))
+    own = (center[0], center[1], ego.heading, footprint.length, footprint.width)
+    theirs = (track.x, track.y, track.heading, track.length, track.width)
+    part, other_part = _part(own, theirs), _part(theirs, own)
     by: Literal["ego", "other", "both"]
     if ego.speed < STANDING:
         by = "other"

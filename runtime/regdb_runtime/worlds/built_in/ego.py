@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from regdb_runtime.observation import EgoState, Footprint, TurnSignal
-from regdb_runtime.planning.trajectory import Trajectory
+from regdb_runtime.planning.trajectory import Floats, Trajectory
 
 
 @dataclass(frozen=True, slots=True)
@@ -34,7 +34,7 @@ def move_ego(state: EgoState, plan: Trajectory, signal: TurnSignal, duration: fl
     """Where the ego is after `duration` seconds of a plan that begins now; it stands at the plan's end when the plan is shorter."""
     count = max(1, round(duration / settings.step))
     step = duration / count
-    times = np.arange(1, count + 1) * step
+    times = np.arange(1, count + 1, dtype=np.float64) * step
     wanted = _wanted(plan, times)
     most_bend = math.tan(settings.steering) / footprint.wheelbase
     x, y, heading, speed, acceleration, curvature = state.x, state.y, state.heading, state.speed, state.acceleration, state.curvature
@@ -56,7 +56,7 @@ def move_ego(state: EgoState, plan: Trajectory, signal: TurnSignal, duration: fl
     return EgoState(x, y, math.remainder(heading, 2 * math.pi), speed, acceleration, curvature, signal)
 
 
-def _wanted(plan: Trajectory, times: np.ndarray) -> list[tuple[float, ...]]:  # type: ignore[type-arg]
+def _wanted(plan: Trajectory, times: Floats) -> list[tuple[float, ...]]:
     """The plan at these times: x, y, heading, speed, acceleration, curvature; standing beyond its end."""
     ended = times > plan.time[-1] + 1e-9
     rows = [np.interp(times, plan.time, row) for row in (plan.x, plan.y, np.unwrap(plan.heading), plan.speed, plan.acceleration, plan.curvature)]

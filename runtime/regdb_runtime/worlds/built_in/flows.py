@@ -25,7 +25,7 @@ class Flow:
         if spec.per_hour <= 0.0:
             raise WorldError(f"{spec.id}: {spec.per_hour:g} vehicles an hour are no flow")
         self._spec, self._map, self._tables, self._settings = spec, road_map, tables, settings
-        self._chance = random.Random(f"{seed} {spec.id}")  # noqa: S311
+        self._chance = random.Random(f"{seed} {spec.id}")
         self._count = 0
         self._next = spec.start + self._chance.expovariate(spec.per_hour / 3600.0)
 
@@ -46,7 +46,7 @@ class Flow:
 
     def _truck_next(self) -> bool:
         """Fixed for each arrival, however long it waits outside."""
-        return random.Random(f"{self._spec.id} {self._count}").random() < self._spec.trucks  # noqa: S311
+        return random.Random(f"{self._spec.id} {self._count}").random() < self._spec.trucks
 
     def _way(self) -> tuple[str, ...]:
         """A route drawn junction by junction from what the lane offers."""

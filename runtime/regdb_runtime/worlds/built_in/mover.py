@@ -39,9 +39,9 @@ class Mover:
     """Held by the traffic; `station` and `offset` are of its middle along its present lane."""
 
     __slots__ = (
-        "acceleration", "bicycle", "curved", "enters", "gone", "half_length", "half_width", "hazard_kind", "id", "idm", "kind", "lane", "leaves_at",
-        "length", "offset", "place", "resting_offset", "route", "scattered", "speed", "speeds", "station", "stood", "table", "tables", "waiting_since",
-        "warning_lights", "weave", "width", "wish",
+        "acceleration", "bicycle", "enters", "gone", "half_length", "half_width", "hazard_kind", "id", "idm", "kind", "leaves_at", "length",
+        "offset", "place", "resting_offset", "route", "scattered", "speed", "speeds", "station", "stood", "table", "tables",
+        "waiting_since", "warning_lights", "weave", "width", "wish",
     )  # fmt: skip
 
     def __init__(

@@ -42,10 +42,11 @@ class Pedestrian:
             along = math.fmod(self.walked, 2 * self.length)
             if along > self.length:
                 along, turned = 2 * self.length - along, True
-        for (ax, ay), (bx, by), reach in self._legs:
-            if along <= reach:
-                break
-            along -= reach
+        leg = 0
+        while leg < len(self._legs) - 1 and along > self._legs[leg][2]:
+            along -= self._legs[leg][2]
+            leg += 1
+        (ax, ay), (bx, by), reach = self._legs[leg]
         part = min(along / reach, 1.0)
         heading = math.atan2(by - ay, bx - ax) + (math.pi if turned else 0.0)
         return ax + part * (bx - ax), ay + part * (by - ay), math.remainder(heading, 2 * math.pi)

@@ -55,7 +55,8 @@ def _conflicts(lane: LaneTable, others: Iterable[LaneTable]) -> Iterable[Conflic
         near = gaps < TOUCH
         if near.any():
             own, theirs = np.flatnonzero(near.any(axis=1)), np.flatnonzero(near.any(axis=0))
-            yield Conflict(other.id, float(own[0]) * lane.step, float(own[-1]) * lane.step, float(theirs[0]) * other.step, float(theirs[-1]) * other.step)
+            begin, end = (float(own[place]) * lane.step for place in (0, -1))
+            yield Conflict(other.id, begin, end, *(float(theirs[place]) * other.step for place in (0, -1)))
 
 
 def find_siblings(tables: LaneTables) -> dict[str, tuple[tuple[str, float], ...]]:
@@ -117,8 +118,9 @@ class RightOfWay:
         return lane.control in ("stop_ego", "stop_all") and mover.stood < self.settings.stand
 
     def clear(
-        self, mover: Mover, lane: LaneTable, time: float, distance: float, coming: Mapping[str, list[Approaching]], occupied: Mapping[str, list[float]]
-    ) -> bool:
+        self, mover: Mover, lane: LaneTable, time: float, distance: float, coming: Mapping[str, list[Approaching]],
+        occupied: Mapping[str, list[float]],
+    ) -> bool:  # fmt: skip
         """Whether the way is neither taken, nor occupied, nor about to be used by somebody who goes first."""
         after = _time_to(distance + lane.length + mover.length, mover.speed, mover.idm.acceleration, lane.curve_speed)
         for conflict in self.conflicts[lane.id]:

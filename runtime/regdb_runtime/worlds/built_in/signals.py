@@ -56,7 +56,7 @@ class Signals:
             x, y = self._places[name]
             ahead = (x - ego.x) * math.cos(ego.heading) + (y - ego.y) * math.sin(ego.heading)
             facing = math.cos(heading - ego.heading)
-            if facing > 0.5 and -15.0 <= ahead and math.hypot(x - ego.x, y - ego.y) <= reach:
+            if facing > 0.5 and ahead >= -15.0 and math.hypot(x - ego.x, y - ego.y) <= reach:
                 light = self._lights[name]
                 shape = _SHAPES[light.direction] if light.arrow and light.direction in _SHAPES else "circular"
                 found[name] = (Indication(color_at(light, time), shape),)

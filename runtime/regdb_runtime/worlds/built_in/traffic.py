@@ -59,7 +59,8 @@ class Traffic:
         self.right_of_way.free_ways()
         self._enter_all(ego, footprint, people)
         coming = self._coming(ahead, ego.speed)
-        occupied = {name: [item.station for item in entries if item.mover is None] for name, entries in self._entries.items() if self.tables[name].inner}
+        inner = ((name, entries) for name, entries in self._entries.items() if self.tables[name].inner)
+        occupied = {name: [item.station for item in entries if item.mover is None] for name, entries in inner}
         present = [mover for mover in self.movers if mover.enters <= time + 1e-9]
         wanted = [self._acceleration(mover, time, coming, occupied) for mover in present]
         for mover, acceleration in zip(present, wanted, strict=True):
@@ -215,7 +216,8 @@ class Traffic:
         """Whether the lane after the junction has room for the vehicle, so that it need not stand in the junction."""
         for entry in self._entries.get(lane.successors[0] if lane.successors else "", ()):
             rear = entry.station - entry.half_length
-            if entry.mover is not mover and rear < mover.length + 3.0 and entry.speed < 2.0 and abs(entry.offset) < entry.half_width + mover.half_width:
+            in_the_way = abs(entry.offset) < entry.half_width + mover.half_width
+            if entry.mover is not mover and rear < mover.length + 3.0 and entry.speed < 2.0 and in_the_way:
                 return False
         return True
 

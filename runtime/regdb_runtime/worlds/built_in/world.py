@@ -124,7 +124,7 @@ class BuiltInWorld:
         return EgoState(x, y, math.remainder(heading, 2 * math.pi), ego.speed, 0.0, table.bend(ego.station))
 
     def _add_movers(self) -> None:
-        chance = random.Random(f"{self.spec.seed} drivers")  # noqa: S311
+        chance = random.Random(f"{self.spec.seed} drivers")
         for item in self.spec.vehicles:
             self._traffic.movers.append(vehicle(item, self._map, self._tables, self._settings, chance))
         for rider in self.spec.cyclists:
@@ -160,7 +160,8 @@ def _read_start(text: str) -> datetime.datetime:
 
 
 def _check_names(spec: SceneSpec) -> None:
-    names = [item.id for item in (*spec.vehicles, *spec.cyclists, *spec.pedestrians, *spec.parked)]
+    groups = (spec.vehicles, spec.cyclists, spec.pedestrians, spec.parked)
+    names = [item.id for group in groups for item in group]
     twice = sorted({name for name in names if names.count(name) > 1})
     if twice:
         raise WorldError(f"two road users are called {twice[0]!r}")
