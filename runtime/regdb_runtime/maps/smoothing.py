@@ -69,7 +69,7 @@ class PathTable:
 
 def tabulate(points: Floats, settings: PathSettings) -> PathTable:
     """The table of the line through waypoints (n, 2), n >= 2, none of them twice in a row."""
-    from scipy.interpolate import CubicSpline  # 0.4 s to import, and only who plans needs it
+    from scipy.interpolate import CubicSpline  # type: ignore[import-untyped]  # 0.4 s to import, and only who plans needs it
 
     knots = smoothed(points, settings) if settings.smoothing_length > 0.0 and len(points) > 2 else points
     chord = _chord(knots)
@@ -119,11 +119,11 @@ class _Weights:
         self.weight = np.gradient(at) if len(at) > 2 else np.full(len(at), total / 2)
 
     def values(self, nodes: Floats) -> Floats:
-        return nodes[self.left] * (1 - self.share)[:, None] + nodes[self.left + 1] * self.share[:, None]
+        return np.asarray(nodes[self.left] * (1 - self.share)[:, None] + nodes[self.left + 1] * self.share[:, None])
 
     def solve(self, data: Floats, length: float) -> Floats:
         """The nodes (count, 2) that fit data best; the normal equations have seven diagonals."""
-        from scipy.linalg import solveh_banded
+        from scipy.linalg import solveh_banded  # type: ignore[import-untyped]
 
         own, other, weight = 1 - self.share, self.share, self.weight
         banded = _roughness(self.count) * (length**6 / self.spacing**5)

@@ -5,9 +5,12 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
+import numpy as np
+
 from regdb_runtime.planning.goal import Goal
+from regdb_runtime.planning.polynomials import change_time
 from regdb_runtime.planning.settings import LatticeSettings
-from regdb_runtime.trajectory import FrenetState
+from regdb_runtime.trajectory import STANDING, FrenetState
 
 SHAPE = 0.75
 """Way of a change of speed without acceleration at its ends, by its greatest acceleration: `SHAPE * (v^2 - w^2) / a`."""
@@ -65,9 +68,22 @@ def _stop(start: FrenetState, goal: Goal, front: float, settings: LatticeSetting
     left = goal.stop.station - start.s - front
     if left < 0.0 or (left <= goal.stop.slack and start.s_dot <= settings.standing):
         return None, True
-    needed = SHAPE * start.s_dot**2 / settings.nominal
-    way = min(left - PAST_LINE, max(left - goal.stop.margin, needed))
+    way = left - goal.stop.margin
+    if way <= 0.0 or _braking(start, way) > settings.margin_braking:
+        way = left - PAST_LINE
     return start.s + max(way, 0.0), False
+
+
+def _braking(start: FrenetState, way: float) -> float:
+    """Greatest braking of the change of speed that comes to a stand after a way; infinite where there is none."""
+    if start.s_dot <= STANDING:
+        return 0.0
+    duration = float(change_time(way, start.s_dot, start.s_ddot, 0.0))
+    if not math.isfinite(duration):
+        return -start.s_ddot if start.s_ddot < 0.0 else math.inf
+    mean = start.s_dot / duration
+    part = np.linspace(0.0, 1.0, 11)
+    return float(np.max(6 * (mean + start.s_ddot / 2) * part * (1 - part) - start.s_ddot * (1 - part)))
 
 
 def _leaders_stop(goal: Goal, front: float, settings: LatticeSettings) -> float | None:

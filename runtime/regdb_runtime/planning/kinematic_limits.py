@@ -9,21 +9,25 @@ import numpy as np
 from numpy.typing import NDArray
 
 from regdb_runtime.observation import Footprint
-from regdb_runtime.planning.goal import Goal, SpeedCap, StopPoint
+from regdb_runtime.planning.goal import Follow, Goal, SpeedCap, StopPoint
 from regdb_runtime.planning.settings import VehicleLimits
 from regdb_runtime.trajectory import Candidates, Floats
 
 Flags = NDArray[np.bool_]
 REASONS = (
     "speed", "acceleration", "braking", "jerk", "curvature", "curvature_rate", "yaw_rate", "lateral_acceleration",
-    "speed_cap", "cap_ahead", "stop", "stop_ahead",
+    "speed_cap", "cap_ahead", "stop", "stop_ahead", "leader", "leader_ahead", "cruise",
 )  # fmt: skip
-"""In the order in which they are looked at. `cap_ahead`, `stop_ahead`: at the end of the plan it is too late to brake for what comes then."""
+"""In the order in which they are looked at. `cap_ahead`, `stop_ahead`: at the end of the plan it is too late to brake for what comes then.
+`leader`: into the rear of who is followed; `cruise`: faster than the goal wants to go."""
 UNITS = {
     "speed": "m/s", "acceleration": "m/s^2", "braking": "m/s^2", "jerk": "m/s^3", "curvature": "1/m", "curvature_rate": "1/(m s)",
     "yaw_rate": "rad/s", "lateral_acceleration": "m/s^2", "speed_cap": "m/s", "cap_ahead": "m/s", "stop": "m", "stop_ahead": "m/s",
+    "leader": "m", "leader_ahead": "m/s", "cruise": "m/s",
 }  # fmt: skip
 ROUNDING = 1e-6
+CRUISE_TOLERANCE = 0.05
+"""m/s over the cruising speed that pass: it is a wish, no law."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -68,6 +72,9 @@ def check(candidates: Candidates, limits: VehicleLimits, goal: Goal | None = Non
             tests += _cap(candidates, limits, cap, front, late)
         if goal.stop is not None:
             tests += _stop(candidates, limits, goal.stop, front, late)
+        if goal.follow is not None:
+            tests += _leader(candidates, limits, goal.follow, front)
+        tests += _cruise(candidates, limits, goal.cruise_speed)
     return _gathered(len(candidates), tests, late)
 
 
@@ -148,7 +155,7 @@ def _cap(plans: Candidates, limits: VehicleLimits, cap: SpeedCap, front: float, 
     bound = np.full(len(plans.time), cap.speed)
     if excused:
         late.append(cap.rule)
-        bound = np.maximum(bound, speed - braking * np.maximum(plans.time - limits.settle, 0.0))
+        bound = np.maximum(bound, _coming_down(plans, limits, braking))
     station, fast = plans.station[rows], plans.speed[rows]
     within = station < leave
     within[:, :-1] &= station[:, 1:] > enter
@@ -160,6 +167,44 @@ def _cap(plans: Candidates, limits: VehicleLimits, cap: SpeedCap, front: float, 
     if not excused:
         reach = np.sqrt(cap.speed**2 + 2 * limits.braking * np.maximum(enter - station[:, -1], 0.0))
         yield _spread("cap_ahead", len(plans), rows, fast[:, -1], reach, (station[:, -1] < enter) & (fast[:, -1] > reach + ROUNDING), cap.rule)
+
+
+def _coming_down(plans: Candidates, limits: VehicleLimits, braking: float) -> Floats:
+    """Speed (t,) of who brakes from the start on after `settle`, having first taken back what acceleration it had."""
+    speed, acceleration = float(plans.speed[0, 0]), max(float(plans.acceleration[0, 0]), 0.0)
+    rise = acceleration * limits.settle / 2 + acceleration * acceleration / (2 * limits.jerk)
+    return np.asarray(speed + rise - braking * np.maximum(plans.time - limits.settle, 0.0))
+
+
+def _cruise(plans: Candidates, limits: VehicleLimits, wanted: float) -> Iterator[_Test]:
+    """No faster than the goal wants, or coming down to it."""
+    most = wanted + CRUISE_TOLERANCE
+    if float(plans.speed.max()) <= most:
+        return
+    bound = np.full(len(plans.time), most)
+    if float(plans.speed[0, 0]) > most:
+        bound = np.maximum(bound, _coming_down(plans, limits, limits.recovery))
+    at = (plans.speed - bound).argmax(axis=1)
+    value = plans.speed[np.arange(len(plans)), at]
+    yield _Test("cruise", value, bound[at], value > bound[at] + ROUNDING)
+
+
+def _leader(plans: Candidates, limits: VehicleLimits, leader: Follow, front: float) -> Iterator[_Test]:
+    """The front bumper behind the leader's rear, who goes on as now or brakes to a stand; and able to stay so at the end.
+
+    Nothing is asked where they already stand side by side.
+    """
+    if leader.rear_station <= float(plans.station[0, 0]) + front:
+        return
+    slowing = min(leader.acceleration, 0.0)
+    braked = np.minimum(plans.time, leader.speed / -slowing) if slowing < 0 else plans.time
+    rear = leader.rear_station + leader.speed * braked + slowing * braked * braked / 2 - front
+    gap = rear - plans.station
+    least = gap.min(axis=1)
+    yield _Test("leader", least, 0.0, least < -ROUNDING)
+    speed = leader.speed + slowing * float(braked[-1])
+    reach = speed + np.sqrt(2 * limits.braking * np.maximum(gap[:, -1], 0.0))
+    yield _Test("leader_ahead", plans.speed[:, -1], reach, plans.speed[:, -1] > reach + ROUNDING)
 
 
 def _spread(reason: str, count: int, rows: NDArray[np.intp], value: Floats, bound: Floats, wrong: Flags, rule: str) -> _Test:

@@ -69,7 +69,7 @@ def sample(
     `workspace` the arrays are valid until its next use; without, they are the caller's own.
     """
     settings, footprint = settings or LatticeSettings(), footprint or Footprint()
-    time = np.arange(settings.points) * settings.step
+    time: Floats = np.arange(settings.points, dtype=np.float64) * settings.step
     motions = speed_profiles(start, goal, footprint.front, settings, time)
     sides = _sides(start, goal, settings)
     count, points = motions[0].shape

@@ -17,7 +17,8 @@ class LatticeSettings:
     under the comfortable 2 m/s^2, so that the next plan has room. `hard`: of the braking kept ready for what comes late.
     `gentle_jerk`, `hard_jerk`: of the gentle changes, m/s^3, a tenth under the comfortable 4.13, and of the hard.
     `shortest`: least duration of a change, s.
-    `stop_stretches`: durations of further ways to a stop point, as parts of that of the plainest one.
+    `stop_stretches`: durations of further ways to a stop point, by that of the plainest one; shorter ones would put the braking off.
+    `margin_braking`: m/s^2 over which a stop gives up its margin before the line rather than brake harder.
     `lateral_times`: shortest and longest time of a change of offset, s; `slowest`: speed (m/s) under which its length no longer shrinks.
     `lateral_grid`: metres; changes of offset end at multiples of a whole number of these, so that the next plan finds the same end again.
     `cap_distance`, `cap_speed`: metres before a boundary, and m/s under a cap, that are aimed at. `headway`, `standstill_gap`: behind a leader.
@@ -33,7 +34,8 @@ class LatticeSettings:
     gentle_jerk: float = 3.7
     hard_jerk: float = 20.0
     shortest: float = 0.5
-    stop_stretches: tuple[float, ...] = (0.85, 0.93, 1.08, 1.2)
+    stop_stretches: tuple[float, ...] = (1.06, 1.15)
+    margin_braking: float = 2.5
     follow_times: tuple[float, ...] = (2.0, 3.0, 4.0, 5.0, 7.0)
     lateral_times: tuple[float, float] = (1.0, 6.5)
     slowest: float = 4.0

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -18,6 +19,8 @@ REVERSE = -1e-4
 """m/s under which a motion goes backwards; above, it is rounding."""
 QUINTIC_PEAKS = (5.7736, 60.0)
 """Greatest acceleration and jerk of the quintic from rest to rest over 1 m in 1 s."""
+AT_STOP = 0.02
+"""Metres beyond where it should stand at which a motion is left out, while others keep it."""
 SQUEEZE = 1.02
 """By how much a later braking may surpass the nominal one before its profile is left out: the way straight to the gate is among them."""
 
@@ -42,7 +45,7 @@ def speed_profiles(
 ) -> tuple[Floats, Floats, Floats]:
     """Station, speed and acceleration along the path (p, t) of every motion; none goes backwards.
 
-    All start in the start state. `front`: from the rear axle to the front bumper, metres.
+    All start in the start state; those that pass where they should stand are left out unless all do. `front`: from the rear axle to the front bumper, metres.
     """
     view = ahead(start, goal, front, settings)
     firsts = [_changes(start, goal, view, settings)]
@@ -51,9 +54,10 @@ def speed_profiles(
     each = ([getattr(first, name) for first in firsts] for name in ("pieces", "durations", "end_speeds", "free"))
     chains = _laid_on(_Firsts(*(np.concatenate(values) for values in each)), start.s, view.gates, settings)
     station, speed, acceleration = chains.at(time)
-    forward = speed.min(axis=1) >= REVERSE
-    station, speed, acceleration = station[forward], np.maximum(speed[forward], 0.0), acceleration[forward]
-    return station, speed, acceleration
+    kept = speed.min(axis=1) >= REVERSE
+    short = kept & (station[:, -1] <= min((gate.station for gate in view.gates if gate.speed <= 0.0), default=np.inf) + AT_STOP)
+    kept = short if short.any() else kept
+    return station[kept], np.maximum(speed[kept], 0.0), acceleration[kept]
 
 
 def _changes(start: FrenetState, goal: Goal, view: Ahead, settings: LatticeSettings) -> _Firsts:
@@ -92,7 +96,7 @@ def _duration(gain: float, acceleration: float, peak: float, jerk: float, shorte
 
     Already accelerating towards the end speed, the longest that does not overshoot with even jerk is 2 gain / acceleration.
     """
-    plain = max(1.5 * abs(gain) / peak, (6 * abs(gain) / jerk) ** 0.5, shortest)
+    plain = max(1.5 * abs(gain) / peak, math.sqrt(6 * abs(gain) / jerk), shortest)
     if acceleration * gain > 0:
         return max(min(plain, 2 * gain / acceleration), 0.1)
     return max(plain, 4 * abs(acceleration) / jerk)
