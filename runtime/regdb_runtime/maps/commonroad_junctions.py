@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from dataclasses import replace
 
 from regdb_runtime.maps.commonroad_lanes import references
-from regdb_runtime.maps.junctions import JunctionSettings, turn_of
+from regdb_runtime.maps.junctions import JunctionSettings, lanes_within, turn_of, turns_within
 from regdb_runtime.maps.road_map import Approach, Control, Lane, RoadJunction, Sign, Turn
 from regdb_runtime.maps.xml_source import XmlNode
 
@@ -21,6 +21,7 @@ def place_junctions(
     root: XmlNode, lanes: Mapping[str, Lane], signs: Mapping[str, Sign], notes: list[str]
 ) -> tuple[dict[str, Lane], dict[str, RoadJunction]]:
     """The lanes with `junction`, `turn` and `control` as the file's `<intersection>`s say, and the junctions."""
+    settings = JunctionSettings()
     found, junctions = dict(lanes), {}
     for node in root.all("intersection"):
         turns: dict[str, Turn] = {}
@@ -31,11 +32,15 @@ def place_junctions(
             approaches.append(Approach(incoming.attribute("id"), entry, left_of[0] if left_of else None))
             for tag, turn in TURNS.items():
                 turns.update(dict.fromkeys(_lanes(incoming, tag, lanes), turn))
-        _lanes_between(approaches, turns, lanes)
+        entries = [lane for approach in approaches for lane in approach.lanes]
+        forgotten = {lane: turn_of(lanes[lane].center, settings) for entry in entries for lane in lanes[entry].successors if lane not in turns}
+        begun: dict[str, Turn | None] = {**turns, **forgotten}
+        inner = lanes_within(lanes, entries, begun, settings)
         name = node.attribute("id")
-        for lane, turn in turns.items():
-            found[lane] = replace(found[lane], junction=name, turn=turn, control=_control(lanes, lane, signs))
-        junctions[name] = RoadJunction(name, tuple(turns), tuple(approaches))
+        controls = {lane: _control(lanes, lane, signs) for lane in begun}
+        for lane, leads in turns_within(lanes, inner, begun).items():
+            found[lane] = replace(found[lane], junction=name, turn=leads, control=controls.get(lane, "unknown"))
+        junctions[name] = RoadJunction(name, inner, tuple(approaches))
         if node.find("crossing") is not None:
             notes.append(f"<crossing> of {node.where}: its lanelets are crosswalks by their kind alone")
     return found, junctions
@@ -47,23 +52,6 @@ def _lanes(node: XmlNode, tag: str, lanes: Mapping[str, Lane]) -> tuple[str, ...
         if ref not in lanes:
             raise node.fail(f"names lanelet {ref} as {tag}, which the file does not define")
     return found
-
-
-def _lanes_between(approaches: list[Approach], turns: dict[str, Turn], lanes: Mapping[str, Lane]) -> None:
-    """Adds lanes that lead on from an approach and that the file forgot, and those of kind `intersection` after a lane within."""
-    settings = JunctionSettings()
-    for approach in approaches:
-        for entry in approach.lanes:
-            for lane in lanes[entry].successors:
-                if lane not in turns and len(lanes[entry].successors) > 1:
-                    turns[lane] = turn_of(lanes[lane].center, settings)
-    waiting = list(turns)
-    while waiting:
-        lane = waiting.pop()
-        for onward in lanes[lane].successors:
-            if onward not in turns and "intersection" in lanes[onward].kinds:
-                turns[onward] = turns[lane]
-                waiting.append(onward)
 
 
 def _control(lanes: Mapping[str, Lane], inner: str, signs: Mapping[str, Sign]) -> Control:

@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from regdb_runtime.maps.junctions import turn_along
 from regdb_runtime.maps.lines import angle, crossing, headings, inside
 from regdb_runtime.maps.reference_path import ReferencePath
 from regdb_runtime.maps.road_map import Control, Floats, Lane, RoadMap, SignalDirection, StopLine, Turn
@@ -219,8 +220,7 @@ def _junction(road_map: RoadMap, lane_path: LanePath, name: str, first: int, las
     spans = lane_path.spans
     entrance, leaving = spans[first].start, spans[last].end
     inner = road_map.lanes[spans[first].lane]
-    turns = [lane.turn for lane in (road_map.lanes[span.lane] for span in spans[first : last + 1]) if lane.turn not in (None, "straight")]
-    turn: Turn = turns[0] or "straight" if turns else "straight"
+    turn = turn_along(road_map.lanes, [span.lane for span in spans[first : last + 1]])
     approach = road_map.lanes[spans[first - 1].lane] if first else None
     line = _stop_line(road_map, lane_path, first, reach) or _line_within(road_map, lane_path, first)
     crosswalks = _crosswalks(road_map, lane_path, entrance - reach.crosswalk_before, leaving + reach.crosswalk_before, reach.sample)

@@ -112,7 +112,8 @@ class Lane:
 
     `speed_limit`: m/s posted for it on the map, None unknown. `kinds`: the map's lane kinds (`urban`, `highway`, `bicycle_lane`,
     `crosswalk`, `sidewalk`, `shoulder`, `intersection`, `bus_lane`, `parking` …). `users`: who may use it in its direction; empty: unknown.
-    `left`/`right`: neighbouring lane's id with `*_same_direction`. `turn`: how a lane within a junction leads, None elsewhere.
+    `left`/`right`: neighbouring lane's id with `*_same_direction`. `turn`: how a lane within a junction leads, None elsewhere and
+    where ways of different turns share it.
     `facts`: what the map knows of this lane in the vocabulary's words. `control`: for a lane within a junction, how the entry into it is regulated.
     """
 

@@ -9,7 +9,7 @@ from itertools import pairwise
 from typing import Literal
 
 from regdb_runtime.errors import NoRoute
-from regdb_runtime.maps.junctions import side_by_side
+from regdb_runtime.maps.junctions import side_by_side, turn_along
 from regdb_runtime.maps.lane_graph import is_driven
 from regdb_runtime.maps.road_map import CROSSABLE, Lane, RoadMap, Turn
 
@@ -97,9 +97,18 @@ class Route:
             name = lane if index == place else self.lanes[index]
             found = self.road_map.lanes[name]
             if found.junction is not None:
-                return NextTurn(name, found.junction, found.turn or "straight", max(distance, 0.0))
+                return NextTurn(name, found.junction, turn_along(self.road_map.lanes, self._way(name, index)), max(distance, 0.0))
             distance += found.length
         return None
+
+    def _way(self, lane: str, place: int) -> list[str]:
+        """The lanes of the junction from this one on."""
+        way = [lane]
+        for name in self.lanes[place + 1 :]:
+            if self.road_map.lanes[name].junction != self.road_map.lanes[lane].junction:
+                break
+            way.append(name)
+        return way
 
     def remaining(self, lane: str, station: float) -> float:
         """Metres from a station of a lane to the end of the route; NoRoute off the route."""
@@ -224,7 +233,7 @@ def next_moves(road_map: RoadMap, route: Route, lane: str, station: float = 0.0)
     here = road_map.lanes[lane]
     left_to_go = here.length - station
     onward, changes = route.onward(lane), route.changes(lane)
-    moves = [Move(road_map.lanes[name].turn or "straight", name, name == onward, left_to_go) for name in here.successors]
+    moves = [Move(_kind(road_map, name), name, name == onward, left_to_go) for name in here.successors]
     if here.junction is None:
         reach = _distance_to_leave(road_map, route, lane, station)
         if here.left is not None and here.left_same_direction:
@@ -232,6 +241,11 @@ def next_moves(road_map: RoadMap, route: Route, lane: str, station: float = 0.0)
         if here.right is not None and here.right_same_direction:
             moves.append(Move("lane_change_right", here.right, changes < 0, reach))
     return tuple(sorted(moves, key=lambda move: (not move.needed, move.kind, move.lane)))
+
+
+def _kind(road_map: RoadMap, lane: str) -> MoveKind:
+    """How a following lane leads: within a junction its turn, elsewhere straight on."""
+    return "straight" if road_map.lanes[lane].junction is None else turn_along(road_map.lanes, [lane])
 
 
 def _distance_to_leave(road_map: RoadMap, route: Route, lane: str, station: float) -> float:

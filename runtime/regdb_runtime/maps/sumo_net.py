@@ -140,7 +140,10 @@ def _linked(lanes: Mapping[str, Lane], links: list[Link]) -> dict[str, Lane]:
 def _with_junctions(
     root: XmlNode, lanes: Mapping[str, Lane], edges: Mapping[str, _Edge], links: list[Link]
 ) -> tuple[dict[str, Lane], dict[str, RoadJunction]]:
-    """Lanes within a junction with its id, their turn and control. A node without a signal that has less than three arms, or where all only merge or fork, is none."""
+    """Lanes within a junction with its id, their turn and control.
+
+    A node without a signal that has less than three arms, or where all only merge or fork, is none.
+    """
     entered = {link.via: link for link in links if link.via is not None and edges[link.edge].function == "normal"}
     found, junctions = dict(lanes), {}
     for node in root.all("junction"):
