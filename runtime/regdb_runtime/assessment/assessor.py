@@ -150,6 +150,6 @@ class _Search:
         return Assessed(None, NO_PLAN, judged.verdict(0), self.fallen.report(), judged=self.judged)
 
     def _found(self, batch: Rows, judged: Judged, row: int, rank: int, violation: tuple[float, int, float] = NONE_BROKEN) -> Assessed:
-        verdicts = self.judging.final(judged.facts, row)
+        verdicts = self.judging.final(judged, row)
         worst = max(verdicts, key=lambda verdict: RANKS[verdict.verdict])
         return Assessed(int(batch[row]), rank, worst, self.fallen.report(), verdicts, violation, self.judged)

@@ -36,7 +36,7 @@ class Caps:
             cap = self._strictest(maneuver, stretch, shared)
             if cap is None:
                 continue
-            speed, rule = max(cap[0] - self.settings.cap_margin, 0.0), cap[1]
+            speed, rule = cap
             held = found[-1] if found else None
             if held is not None and held.end == stretch.start and held.speed == speed and held.rule == rule:
                 found[-1] = SpeedCap(held.start, stretch.end, speed, rule)

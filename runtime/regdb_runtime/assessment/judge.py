@@ -21,11 +21,13 @@ Rows = NDArray[np.intp]
 
 @dataclass(frozen=True, eq=False)
 class Group:
-    """Plans alike in one stretch, and the verdict on them."""
+    """Plans alike in one stretch, and the verdict on them, which was given on the first of the rows."""
 
     stretch: int
     verdict: Verdict
     rows: Rows
+    own: bool = True
+    """False where the verdict was given on a plan of another batch."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -67,9 +69,11 @@ class Judging:
                 rank[worse], worst[worse] = found, index
         return Judged(facts, groups, rank, worst)
 
-    def final(self, facts: PlanFacts, row: int) -> tuple[Verdict, ...]:
+    def final(self, judged: Judged, row: int) -> tuple[Verdict, ...]:
         """One plan judged by all its own numbers, stretch by stretch."""
-        return tuple(self._verdict(facts, index, row) for index in range(len(self.stretches)) if facts.reached[index, row])
+        return tuple(
+            group.verdict if group.own and group.rows[0] == row else self._verdict(judged.facts, group.stretch, row) for group in judged.of(row)
+        )
 
     def _grouped(self, facts: PlanFacts, index: int, rows: Rows) -> Iterator[Group]:
         if len(rows) == 1:
@@ -83,12 +87,11 @@ class Judging:
         kinds, first, places = np.unique(coded[rows], return_index=True, return_inverse=True)
         for place in np.argsort(first, kind="stable").tolist():
             code = int(kinds[place])
-            verdict = self.known.get((index, code)) if lasting else None
-            if verdict is None:
-                verdict = self._verdict(facts, index, int(rows[first[place]]))
-                if lasting:
-                    self.known[index, code] = verdict
-            yield Group(index, verdict, rows[places == place])
+            held = self.known.get((index, code)) if lasting else None
+            verdict = held or self._verdict(facts, index, int(rows[first[place]]))
+            if lasting:
+                self.known[index, code] = verdict
+            yield Group(index, verdict, rows[places == place], held is None)
 
     def _verdict(self, facts: PlanFacts, index: int, row: int) -> Verdict:
         stretch = self.stretches[index]

@@ -34,8 +34,6 @@ class AssessmentSettings:
     """Metres edge to edge beyond which going by somebody is no overtaking of him: more than a lane and a half."""
     recovery: float = 0.2
     """m/s by which a gap that is already too small must grow until the plan ends, unless the vehicle all but stands."""
-    cap_margin: float = 0.05
-    """m/s that caps stay below the law's limit: what following a plan may add (a tenth of a mile an hour)."""
     claims_no_room: bool = False
     """Whether plans claim that no path leaves the clearance the law asks. The claim opens an exception (CVC 21760(d)); waiting behind needs none."""
     least_violation: tuple[str, ...] = field(default=GRAVEST_FIRST)
