@@ -22,6 +22,7 @@ from regdb_runtime.worlds.scene_spec import (
     SightingSpec,
     VehicleSpec,
 )
+from regdb_runtime.worlds.streets import compass
 
 __all__ = ["build", "random_scene"]
 
@@ -44,7 +45,7 @@ class _Street:
 
 def random_scene(seed: int) -> SceneSpec:
     """The scene of a seed: the same for ever, and different enough from its neighbours."""
-    chance = random.Random(f"scene {seed}")  # noqa: S311
+    chance = random.Random(f"scene {seed}")
     street = _street(chance)
     streets, turns = _streets(chance, street)
     lane = f"main.{_first_compass(street)}.{chance.randint(1, street.lanes)}"
@@ -122,15 +123,14 @@ def _phased(chance: random.Random, junction: JunctionSpec, street: _Street, side
     """Two phases, one for each road, and one for the arrow where there is one; begun anywhere in the round."""
     if junction.control != "signal":
         return junction
-    from regdb_runtime.worlds.streets import compass  # noqa: PLC0415
-
     heading = math.radians(street.end.degrees)
     ahead, back = compass(heading), compass(heading + math.pi)
     left, right = compass(heading - math.pi / 2), compass(heading + math.pi / 2)
     arrow = tuple(f"{ahead}.{turn}" for turn in junction.arms[0].arrows)
     main = (ahead, *([back] if "ahead" in sides else []))
     cross = tuple(name for side, name in (("left", left), ("right", right)) if side in sides)
-    phases = [SignalPhase(main, chance.uniform(10, 25)), SignalPhase((*cross, *(name for name in arrow if name.endswith("right"))), chance.uniform(8, 18))]
+    right_arrow = tuple(name for name in arrow if name.endswith("right"))
+    phases = [SignalPhase(main, chance.uniform(10, 25)), SignalPhase((*cross, *right_arrow), chance.uniform(8, 18))]
     if arrow and arrow[0].endswith("left"):
         phases.append(SignalPhase(arrow, 8.0))
     return replace(junction, phases=tuple(replace(phase, green=round(phase.green, 1)) for phase in phases), offset=round(chance.uniform(0, 40), 1))
@@ -166,8 +166,9 @@ def _with_users(chance: random.Random, spec: SceneSpec, street: _Street, ego_lan
         for number in range(chance.choice((0, 0, 1, 2))):
             station += chance.uniform(25.0, 60.0)
             wish = chance.choice((None, None, round(chance.uniform(4.0, 10.0), 1)))
-            vehicles.append(VehicleSpec(f"car_{lane[-1]}_{number}", lane, round(station, 1), round(0.6 * street.limit if wish is None else wish, 2), wish))
-    cyclists = ()
+            speed = round(0.6 * street.limit if wish is None else wish, 2)
+            vehicles.append(VehicleSpec(f"car_{lane[-1]}_{number}", lane, round(station, 1), speed, wish))
+    cyclists: tuple[CyclistSpec, ...] = ()
     if chance.random() < 0.4:
         cyclists = (CyclistSpec("cyclist", lanes[0], round(chance.uniform(90.0, 120.0), 1), round(chance.uniform(3.0, 5.5), 1)),)
         vehicles = [item for item in vehicles if item.lane != lanes[0] or item.station < 80.0 or item.station > 130.0]
@@ -181,8 +182,6 @@ def _with_users(chance: random.Random, spec: SceneSpec, street: _Street, ego_lan
 
 def _entries(streets: StreetsSpec) -> list[str]:
     """Lanes at which traffic comes in from beyond the map, from the shape of the streets alone."""
-    from regdb_runtime.worlds.streets import compass  # noqa: PLC0415
-
     found = []
     for road in streets.roads:
         _, headings = middle_line(road.start, road.pieces)
@@ -194,7 +193,7 @@ def _entries(streets: StreetsSpec) -> list[str]:
 def _with_parked(chance: random.Random, spec: SceneSpec, street: _Street, ego_lane: str) -> SceneSpec:
     """Cars in the parking lane; now and then one that stands beside the road with its warning lights on."""
     road, lane = street.road, ego_lane[:-1] + "1"
-    parked = []
+    parked: list[ParkedSpec] = []
     if road.parking_lane > 0.0:
         offset = -(road.width / 2 + road.bicycle_lane + road.parking_lane / 2 + 0.1)
         station = chance.uniform(30.0, 60.0)
@@ -203,7 +202,8 @@ def _with_parked(chance: random.Random, spec: SceneSpec, street: _Street, ego_la
             station += chance.uniform(7.0, 40.0)
     elif chance.random() < 0.15:
         offset = -(road.width / 2 + road.bicycle_lane + 1.2)
-        parked.append(ParkedSpec("police", lane, round(chance.uniform(80.0, street.length - 40.0), 1), round(offset, 2), "car", 5.0, 1.9, "emergency_lights", "emergency"))
+        station = round(chance.uniform(80.0, street.length - 40.0), 1)
+        parked.append(ParkedSpec("police", lane, station, round(offset, 2), "car", 5.0, 1.9, "emergency_lights", "emergency"))
     return replace(spec, parked=tuple(parked))
 
 
