@@ -20,7 +20,7 @@ class Maneuver:
     on the path within the horizon, None without. `refused`: why it cannot be done at all (`route`, `no_lane` …), empty when it can.
     `via`: the micro-steps between the state now in force and `current`, all within one tick and without motion. `commits`: the manoeuvre is to
     enter the junction, so it is judged as entering it (`plan.enters_intersection`) wherever its sampled horizon ends. `biases`: what the
-    strategist adds to the weighted cost, by name (`lane_needed`, `promise`, `switch`), never to legality.
+    strategist adds to C_distance, by name (`lane_needed`, `promise`, `switch`), in metres; never to legality.
     """
 
     current: str

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 from typing import Literal
 
 from regdb_runtime.maneuver import Maneuver
@@ -50,6 +51,16 @@ def car_following(picture: Picture, step: Step) -> Maneuver:
     return keep_lane(picture, step, follow(picture.lead))
 
 
+def slow_down(picture: Picture, step: Step) -> Maneuver:
+    """Ease out of an emergency: along the lane, no faster than now, and not over a line ahead."""
+    junction = picture.junction
+    stop = None
+    if junction is not None and picture.handling and picture.front <= junction.stop_station:
+        stop = StopPoint(junction.stop_station, f"stop:{junction.id}", picture.settings.stop_slack, picture.settings.stop_margin)
+    found = keep_lane(picture, step, follow(picture.lead), stop=stop)
+    return replace(found, goal=replace(found.goal, cruise_speed=min(picture.speed, found.goal.cruise_speed)))
+
+
 def prepare(side: Literal["left", "right"]) -> Build:
     """Signal and look for a gap: only for a change that the route needs."""
 
@@ -57,7 +68,7 @@ def prepare(side: Literal["left", "right"]) -> Build:
         refused = _no_change(picture, side)
         if refused:
             return refuse(picture, step, refused)
-        return keep_lane(picture, step, follow(picture.lead), side, biases=_needed(picture, 1.0))
+        return keep_lane(picture, step, follow(picture.lead), side, biases=_needed(picture))
 
     return build
 
@@ -74,7 +85,7 @@ def change(side: Literal["left", "right"]) -> Build:
         target = picture.beside(side)
         if target is None:
             return refuse(picture, step, "no_lane")
-        return into_lane(picture, step, side, target, biases=_needed(picture, 1.1))
+        return into_lane(picture, step, side, target, biases=_needed(picture))
 
     return build
 
@@ -99,7 +110,7 @@ def into_lane(
     return Maneuver(
         step.current, step.next, picture.lane, path, goal, side, target, passes, side if passes else "none",
         None if ahead is None else ahead.track.id, picture.paths.junction(path, rear), refused=refused or ("settled" if over else ""),
-        via=step.via, biases=biases,
+        via=step.via, biases=(*biases, ("move", -settings.move)),
     )  # fmt: skip
 
 
@@ -109,7 +120,7 @@ def _go_on(picture: Picture, step: Step, side: Literal["left", "right"]) -> Mane
     assert target is not None
     if step.current != step.next or not step.next.endswith(side):
         return refuse(picture, step, "route")
-    return into_lane(picture, step, side, picture.paths.onto(target, picture.lane), biases=_needed(picture, 1.1))
+    return into_lane(picture, step, side, picture.paths.onto(target, picture.lane), biases=_needed(picture))
 
 
 def _no_change(picture: Picture, side: Literal["left", "right"]) -> str:
@@ -121,7 +132,7 @@ def _no_change(picture: Picture, side: Literal["left", "right"]) -> str:
     return "far" if picture.need.room > picture.settings.lane_change_distance * picture.need.changes else ""
 
 
-def _needed(picture: Picture, share: float) -> tuple[tuple[str, float], ...]:
+def _needed(picture: Picture) -> tuple[tuple[str, float], ...]:
     settings = picture.settings
     near = 1.0 - min(max(picture.need.room, 0.0) / (settings.lane_change_distance * max(picture.need.changes, 1)), 1.0)
-    return (("lane_needed", -share * settings.need_lane * (0.25 + 0.75 * near)),)
+    return (("lane_needed", -settings.need_lane * (0.25 + 0.75 * near)),)

@@ -36,6 +36,7 @@ BUILDERS: Mapping[str, Build] = {
     "overtaking.lane_change_left": overtaking.change_left,
     "overtaking.prepare_lane_change_right": overtaking.prepare_right,
     "overtaking.lane_change_right": overtaking.change_right,
+    "emergency_stop.slow_down": lane_following.slow_down,
 }
 """State -> what builds its manoeuvre. A state of another machine, or one without a builder, is refused as such."""
 
@@ -97,6 +98,7 @@ class Strategist:
             passing=passing,
             stop=chosen(memory.stop, maneuver.junction if picture.handling else None, name == "stop", maneuver.commits, time),
             handling=picture.handling,
+            returning=state.startswith("overtaking.") or (memory.returning and abs(picture.offset) > self.settings.settled_offset),
         )
 
     def _looked(self, picture: Picture) -> Memory:
@@ -128,6 +130,9 @@ class Strategist:
 def _super_state_refusal(picture: Picture, step: Step) -> str:
     """Overtaking begins out of lane following alone; alongside what is passed there is no way back behind it."""
     now, then = picture.memory.state.partition(".")[0], step.next.partition(".")[0]
+    if now == "emergency_stop":
+        over = picture.observation.time - picture.memory.entered >= picture.settings.easing_time - 1e-9
+        return "" if over != (then == "emergency_stop") else "over" if over else "easing"
     if then == "overtaking" and now == "intersection_handling":
         return "not_from_here"
     if now == "overtaking" and then != "overtaking":
@@ -141,5 +146,7 @@ def _abandons(picture: Picture, step: Step) -> bool:
     memory = picture.memory
     if memory.target_lane is not None:
         return step.next != memory.state
-    leaves = memory.passing is not None and not step.next.startswith("overtaking.")
-    return leaves and not overtaking.done(picture, overtaking.passed_now(picture))
+    if memory.passing is None or step.next.startswith("overtaking."):
+        return False
+    away = memory.passing.mode == "by_lane" and picture.lane != picture.paths.onto(memory.passing.home, picture.lane)
+    return away or not overtaking.done(picture, overtaking.passed_now(picture))

@@ -37,3 +37,4 @@ class Memory:
     passing: Pass | None = None
     stop: StopMemory = NO_STOP
     handling: bool = False
+    returning: bool = False

@@ -73,7 +73,7 @@ def prepare_left(picture: Picture, step: Step) -> Maneuver:
     slow, refused = _by_lane(picture)
     if slow is None:
         return refuse(picture, step, refused)
-    return keep_lane(picture, step, follow(picture.lead), "left", biases=_promise(picture, slow, 1.0))
+    return keep_lane(picture, step, follow(picture.lead), "left", biases=_promise(picture, slow))
 
 
 def change_left(picture: Picture, step: Step) -> Maneuver:
@@ -88,7 +88,7 @@ def change_left(picture: Picture, step: Step) -> Maneuver:
     beside = picture.beside("left")
     if slow is None or beside is None:
         return refuse(picture, step, refused or "no_lane")
-    return into_lane(picture, step, "left", beside, slow.track.id, _promise(picture, slow, 1.1))
+    return into_lane(picture, step, "left", beside, slow.track.id, _promise(picture, slow))
 
 
 def prepare_right(picture: Picture, step: Step) -> Maneuver:
@@ -96,7 +96,7 @@ def prepare_right(picture: Picture, step: Step) -> Maneuver:
     refused = _no_return(picture)
     if refused:
         return refuse(picture, step, refused)
-    return keep_lane(picture, step, follow(picture.lead), "right", biases=(("return", -0.5 * picture.settings.promise),))
+    return keep_lane(picture, step, follow(picture.lead), "right", biases=(("return", -picture.settings.return_to_lane),))
 
 
 def change_right(picture: Picture, step: Step) -> Maneuver:
@@ -109,7 +109,7 @@ def change_right(picture: Picture, step: Step) -> Maneuver:
     beside = picture.beside("right")
     if refused or beside is None:
         return refuse(picture, step, refused or "no_lane")
-    return into_lane(picture, step, "right", beside, biases=(("return", -0.6 * picture.settings.promise),))
+    return into_lane(picture, step, "right", beside, biases=(("return", -picture.settings.return_to_lane),))
 
 
 def begun(picture: Picture, maneuver: Maneuver) -> Pass | None:
@@ -186,6 +186,8 @@ def _free_road(picture: Picture) -> float:
     return min(ends)
 
 
-def _promise(picture: Picture, slow: Placed, share: float) -> tuple[tuple[str, float], ...]:
-    gain = max(picture.free_speed - max(slow.along, 0.0), 0.0) / max(picture.free_speed, 1.0)
-    return (("promise", -share * picture.settings.promise * gain),)
+def _promise(picture: Picture, slow: Placed) -> tuple[tuple[str, float], ...]:
+    """What passing will gain, in metres of advance."""
+    settings = picture.settings
+    gain = max(picture.free_speed - max(slow.along, 0.0), 0.0) * settings.promise_time
+    return (("promise", -settings.promise * gain),)

@@ -19,8 +19,10 @@ from regdb_runtime.strategy.settings import StrategySettings
 
 CURVE_STEP = 5.0
 """Metres over which a curve's speed is taken as one."""
-ALIKE = 0.1
-"""Neighbouring stretches whose speeds differ by less than this share become one."""
+ALIKE = 0.25
+"""Neighbouring stretches whose speeds differ by less than this share become one, at the lower speed."""
+CURVE = "limit:curve"
+"""What a cap for a curve cites: comfort, not law."""
 CARRY = 3.0
 """Metres beside its lanes at which the vehicle still counts as on the route's nearest lane."""
 
@@ -145,5 +147,16 @@ def _curve_caps(path: ReferencePath, footprint: Footprint, settings: StrategySet
         if last is not None and last.end >= begin and abs(last.speed - least) < ALIKE * last.speed:
             caps[-1] = SpeedCap(last.start, end, min(last.speed, least), last.rule)
         else:
-            caps.append(SpeedCap(begin + footprint.front, end, least, "limit:curve"))
-    return tuple(caps)
+            caps.append(SpeedCap(begin + footprint.front, end, least, CURVE))
+    return _binding(caps, settings)
+
+
+def _binding(caps: list[SpeedCap], settings: StrategySettings) -> tuple[SpeedCap, ...]:
+    """Without those that gentle braking for the next slower one keeps anyway: the way into a bend is no bend of its own."""
+    kept: list[SpeedCap] = []
+    for cap in reversed(caps):
+        after = next((item for item in reversed(kept) if item.speed < cap.speed), None)
+        reached = math.inf if after is None else math.sqrt(after.speed**2 + 2 * settings.decision_braking * (after.start - cap.start))
+        if reached > cap.speed:
+            kept.append(cap)
+    return tuple(reversed(kept))

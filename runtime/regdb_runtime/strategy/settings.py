@@ -42,6 +42,8 @@ class StrategySettings:
     """Metres short of the line within which a stop counts as at it (the paper's plateau, FEATURES H05)."""
     stop_margin: float = 0.5
     """Metres that the plan aims to stay short of the line."""
+    stop_roll: float = 0.1
+    """Metres that a vehicle slower than `standstill` may still roll: it does not creep on to the line from where it stopped."""
     standstill: float = 0.1
     """m/s below which the vehicle stands."""
     check_time: float = 1.0
@@ -88,13 +90,22 @@ class StrategySettings:
     lane_change_gap_behind: float = 6.0
     """Metres to others in the target lane below which no change is begun; what is safe beyond that, law and prediction decide."""
 
-    need_lane: float = 1.0
-    """Weight of a change of lane that the route needs, growing from 0 to this as its distance falls to nothing."""
+    need_lane: float = 40.0
+    """Metres of advance (the unit of all that follows): what a change of lane that the route needs is worth at last; a quarter at first."""
     promise: float = 0.6
-    """Weight of the speed gained by passing, as a share of the free speed."""
-    switch: float = 0.05
-    """Weight of changing state: two candidates nearer than this do not take turns."""
-    abandon: float = 0.5
-    """Weight of giving up a change of lane or a pass under way."""
+    """Share of the advance gained over `promise_time` by passing that its preparation is credited with: it drives no faster itself."""
+    promise_time: float = 5.0
+    """Seconds: the sampler's horizon, so that promised and sampled advance compare."""
+    move: float = 30.0
+    """Making a change of lane rather than going on preparing it: what its offsets cost by the default profile, and a little more."""
+    return_to_lane: float = 8.0
+    """Going back to the right once something has been passed."""
+    switch: float = 0.5
+    """Changing state: two candidates nearer than this do not take turns."""
+    abandon: float = 60.0
+    """Giving up a change of lane or a pass under way, or entering again what was just left."""
     least_dwell: float = 1.0
-    """Seconds before a state that was left by choice is entered again, unless law leaves nothing else."""
+    """Seconds before a state that was left by choice is entered again without that cost."""
+
+    easing_time: float = 1.0
+    """Seconds of slowing down without new speed after an emergency, before the lane is followed again: two strategic ticks."""

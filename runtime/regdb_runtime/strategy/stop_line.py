@@ -60,10 +60,10 @@ def chosen(memory: StopMemory, junction: Junction | None, stops: bool, enters: b
 
 
 def stop_point(memory: StopMemory, junction: Junction, front: float, settings: StrategySettings) -> StopPoint:
-    """Where to stand: at the line, or, once the vehicle stands at it, exactly there."""
+    """Where to stand: at the line, or, once the vehicle stands at it, there (and the last millimetres it rolls)."""
     rule = f"stop:{line_of(junction)}"
     if memory.phase in ("held", "check"):
-        return StopPoint(front, rule, settings.stop_slack, 0.0)
+        return StopPoint(min(junction.stop_station, front + settings.stop_roll), rule, settings.stop_slack, 0.0)
     return StopPoint(junction.stop_station, rule, settings.stop_slack, settings.stop_margin)
 
 

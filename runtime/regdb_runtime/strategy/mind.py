@@ -1,0 +1,140 @@
+"""What thinks between observation and decision: picture, manoeuvres, evaluation of each, choice, memory, events."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from regdb_runtime.assessment.assessor import Assessor
+from regdb_runtime.decision import CandidateReport, Flag
+from regdb_runtime.maneuver import Maneuver
+from regdb_runtime.observation import EgoState, Footprint, Observation, Track, TurnSignal
+from regdb_runtime.planning.choice import choose
+from regdb_runtime.planning.contacts import Sweeper
+from regdb_runtime.planning.prediction import ConstantVelocity, Predictions, Predictor
+from regdb_runtime.scenes.history import History
+from regdb_runtime.scenes.stretches import Scenes
+from regdb_runtime.strategy.evaluation import Evaluated, Evaluator, failed
+from regdb_runtime.strategy.events import ZoneWatch, state_events, zone_events
+from regdb_runtime.strategy.machine import Machine
+from regdb_runtime.strategy.maneuvers import Strategist
+from regdb_runtime.strategy.memory import Memory
+from regdb_runtime.strategy.paths import paths_of
+from regdb_runtime.strategy.picture import Picture
+from regdb_runtime.strategy.planner_settings import PlannerSettings
+from regdb_runtime.trajectory import Trajectory
+
+if TYPE_CHECKING:
+    from regdb_runtime.database import RegulationDatabase
+    from regdb_runtime.maps.road_map import RoadMap
+    from regdb_runtime.maps.route import Route
+
+
+@dataclass(frozen=True)
+class Thought:
+    """What a tick came to; `trajectory` None when no candidate has a plan."""
+
+    memory: Memory
+    trajectory: Trajectory | None
+    turn_signal: TurnSignal
+    steps: tuple[str, ...]
+    strategic: bool
+    candidates: tuple[CandidateReport, ...]
+    chosen: int | None
+    margin: float | None
+    flag: Flag
+    events: tuple[str, ...]
+    reason: str = ""
+
+
+class Mind:
+    """Strategist and evaluator with what they remember: history, the speed that was free at last, the zone watched for."""
+
+    def __init__(self, strategist: Strategist, evaluator: Evaluator, history: History, predictor: Predictor, settings: PlannerSettings) -> None:
+        self.strategist, self.evaluator, self.history = strategist, evaluator, history
+        self.predictor, self.settings = predictor, settings
+        self._times = np.arange(settings.lattice.points, dtype=np.float64) * settings.lattice.step
+        self._free_speed = settings.strategy.cruise_speed
+        self._watch = ZoneWatch()
+
+    @property
+    def initial(self) -> str:
+        """The state driving starts in."""
+        return self.strategist.machine.initial
+
+    def think(self, observation: Observation, memory: Memory, start: EgoState, strategic: bool) -> Thought:
+        """One tick: among all states that may follow, or in the state in force alone; if that has no lawful plan, among all after all."""
+        picture = self.strategist.picture(observation, memory, self._free_speed)
+        self.history.update(observation)
+        predictions = self.predictor.predict(self._mattering(picture), self._times)
+        if not strategic:
+            own = self._evaluate((self.strategist.own(picture),), picture, start, predictions)
+            if own[0].report.rank == 0:
+                return self._choice(picture, memory, own, strategic=False)
+        found = self._evaluate(self.strategist.maneuvers(picture), picture, start, predictions)
+        return self._choice(picture, memory, found, strategic=True)
+
+    def _evaluate(
+        self, maneuvers: tuple[Maneuver, ...], picture: Picture, start: EgoState, predictions: Predictions
+    ) -> tuple[Evaluated, ...]:
+        """Each on its own: one that raises falls out and says so, the others stay."""
+        found, sweeper = [], Sweeper(predictions, self.evaluator.footprint, self.settings.margin)
+        for maneuver in maneuvers:
+            try:
+                found.append(
+                    self.evaluator.evaluate(maneuver, start, picture.observation, self.history, predictions, sweeper, self._free_speed)
+                )
+            except Exception as error:  # noqa: BLE001  # fails closed: no plan of this candidate
+                found.append(failed(maneuver, error))
+        return tuple(found)
+
+    def _choice(self, picture: Picture, before: Memory, found: tuple[Evaluated, ...], strategic: bool) -> Thought:
+        reports = tuple(item.report for item in found)
+        breaches = {id(item.report): item.breach for item in found}
+        choice = choose(reports, breaches=lambda option: breaches[id(option)])
+        if choice.index is None:
+            return Thought(picture.memory, None, "off", (), strategic, reports, None, None, "no_trajectory", ())
+        taken = found[choice.index]
+        memory = self.strategist.after(picture, taken.maneuver)
+        events = self._events(picture, before, memory, taken)
+        steps = (*taken.maneuver.via, taken.maneuver.next) if taken.maneuver.next != before.state else ()
+        return Thought(
+            memory, taken.report.trajectory, taken.maneuver.turn_signal, steps, strategic, reports, choice.index, choice.margin, choice.flag, events
+        )  # fmt: skip
+
+    def _events(self, picture: Picture, before: Memory, after: Memory, taken: Evaluated) -> tuple[str, ...]:
+        settled = self.settings.strategy.settled_offset
+        front = picture.front
+        self._free_speed = min([cap.speed for cap in taken.caps if cap.start <= front < cap.end], default=self.settings.strategy.cruise_speed)
+        plan = taken.report.trajectory
+        brakes = 0.0 if plan is None else float(plan.acceleration[: 1 + round(0.5 / self.settings.lattice.step)].min())
+        self._watch, seen = zone_events(self._watch, taken.caps, front, brakes)
+        return (*state_events(before, after, picture.offset, settled), *seen)
+
+    def _mattering(self, picture: Picture) -> tuple[Track, ...]:
+        """All road users but those behind in the own lane: they keep their distance from us, not we from them."""
+        half = float(picture.here.widths.min()) / 2
+        behind = {
+            item.track.id for item in picture.placed
+            if item.front <= picture.rear and item.along > 0.0 and -half < item.offset < half
+        }  # fmt: skip
+        return tuple(track for track in picture.observation.tracks if track.id not in behind)
+
+
+def make_mind(
+    database: RegulationDatabase, road_map: RoadMap, route: Route, footprint: Footprint, settings: PlannerSettings, predictor: Predictor | None
+) -> Mind:
+    """Everything that thinks, from law, map and route. Raises RegdbRuntimeError for what does not fit together."""
+    profile = database.interpretations[settings.interpretation]
+    paths = paths_of(road_map, route, footprint, settings.strategy)
+    strategist = Strategist(Machine(database.machine), road_map, route, footprint, settings.strategy, paths)
+    scenes = Scenes(road_map, database, footprint, interpretation=profile)
+    assessor = Assessor(database, footprint, interpretation=profile, road_map=road_map)
+    evaluator = Evaluator(
+        scenes, assessor, footprint, settings.lattice, settings.limits, settings.comfortable, settings.beyond_comfort, settings.cost
+    )  # fmt: skip
+    return Mind(strategist, evaluator, History(), predictor or ConstantVelocity(), settings)
+
+
