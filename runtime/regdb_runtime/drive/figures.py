@@ -7,7 +7,7 @@ speed figure a red line (zone detected, braking begins) and a yellow dashed one 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -15,16 +15,19 @@ from typing import TYPE_CHECKING, Any
 from regdb.units import from_si
 from regdb_runtime.drive.events import Event, events_of, limit_at
 from regdb_runtime.drive.log import Log
+from regdb_runtime.drive.picture import Instant, PictureSettings, paint_scene
 from regdb_runtime.errors import MissingExtra
+from regdb_runtime.maps.road_map import RoadMap
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
 Record = Mapping[str, Any]
-Picture = Callable[["Axes", Record], None]
-"""Draws the scene of one tick into an axis."""
+PICTURE_INCHES = 4.0
+"""Width of a scene beside a figure; lines and letters are painted for 14."""
 MPH = float(from_si(1.0, "mph"))
+VIEW = PictureSettings(along=62.0, across=38.0)
 BEFORE, AFTER = 9.0, 8.0
 """Seconds shown before the first and after the last event."""
 RED, YELLOW, INK, SOFT, BLUE, GREEN = "#c62828", "#f0a500", "#1a1a1a", "#8a8f98", "#1f5fa8", "#2e7d32"
@@ -45,6 +48,18 @@ class Sheet:
     events: tuple[str, str]
 
 
+@dataclass(frozen=True)
+class Scenes:
+    """The scenes that stand beside the figures: event -> what is drawn at it, on the map of the drive."""
+
+    road_map: RoadMap
+    instants: Mapping[str, Instant]
+
+    def paint(self, axes: Axes, name: str) -> None:
+        """The scene at an event, onto axes that are there."""
+        paint_scene(axes, self.road_map, self.instants[name], scale=PICTURE_INCHES / 14.0, settings=VIEW)
+
+
 SHEETS = (
     Sheet("cyclist", "Overtaking a cyclist", ("overtaking_begins", "back_in_lane")),
     Sheet("right-on-red", "Right turn on red", ("stopped", "released")),
@@ -52,15 +67,18 @@ SHEETS = (
 )
 
 
-def draw_all(log: Log, folder: Path, picture: Picture | None = None) -> tuple[Path, ...]:
-    """Every figure whose events the drive has, as PNG files in a folder. Raises MissingExtra without matplotlib."""
+def draw_all(log: Log, folder: Path, scenes: Scenes | None = None) -> tuple[Path, ...]:
+    """Every figure whose events the drive has, as PNG files in a folder; with `scenes` the scene at each event stands beside it.
+
+    Raises MissingExtra without matplotlib.
+    """
     drawn = []
     found = {event.name: event for event in events_of(log.run, log.ticks)}
     for sheet in SHEETS:
         marked = [found[name] for name in sheet.events if name in found]
         if marked:
             path = folder / f"{sheet.name}.png"
-            _save(draw(log, sheet, marked, picture), path)
+            _save(draw(log, sheet, marked, scenes), path)
             drawn.append(path)
     return tuple(drawn)
 
@@ -71,17 +89,18 @@ def _save(figure: Figure, path: Path) -> None:
     figure.savefig(path, dpi=150, metadata={"Software": None})
 
 
-def draw(log: Log, sheet: Sheet, marked: Sequence[Event], picture: Picture | None = None) -> Figure:
+def draw(log: Log, sheet: Sheet, marked: Sequence[Event], scenes: Scenes | None = None) -> Figure:
     """One figure: distance above, speed and limit below, the scene at each event beside them."""
     try:
         from matplotlib.backends.backend_agg import FigureCanvasAgg
         from matplotlib.figure import Figure
     except ModuleNotFoundError as error:
         raise MissingExtra("matplotlib", "plots", "drawing figures") from error
-    figure = Figure(figsize=(10.5 if picture else 6.4, 4.7), layout="constrained")
+    shown = [] if scenes is None else [event for event in marked if event.name in scenes.instants]
+    figure = Figure(figsize=(10.8 if shown else 6.4, 4.9), layout="constrained")
     FigureCanvasAgg(figure)
     ticks = _window(log.ticks, marked)
-    columns = figure.add_gridspec(1, 2 if picture else 1, width_ratios=(1.75, 1) if picture else None)
+    columns = figure.add_gridspec(1, 2 if shown else 1, width_ratios=(1.6, 1) if shown else None)
     rows = columns[0, 0].subgridspec(3, 1, height_ratios=(1.3, 0.085, 1), hspace=0.03)
     above = figure.add_subplot(rows[0])
     strip, below = figure.add_subplot(rows[1], sharex=above), figure.add_subplot(rows[2], sharex=above)
@@ -95,12 +114,11 @@ def draw(log: Log, sheet: Sheet, marked: Sequence[Event], picture: Picture | Non
     above.set_title(f"{sheet.title}: {_place(log)}", loc="left", fontsize=10, color=INK)
     above.tick_params(labelbottom=False)
     below.set_xlabel(f"time, s   (perception: {log.run['provenance']}; world: {log.run['world']})", fontsize=8.5, color=INK)
-    if picture is not None:
-        beside = columns[0, 1].subgridspec(len(marked), 1)
-        for row, event in enumerate(marked):
-            axes = figure.add_subplot(beside[row])
-            picture(axes, _tick_at(log.ticks, event.time))
-            axes.set_title(f"{_LABELS[event.name]}, {event.time:.1f} s".replace("\n", " "), fontsize=8.5, loc="left", color=INK)
+    for row, event in enumerate(shown):
+        axes = figure.add_subplot(columns[0, 1].subgridspec(len(shown), 1)[row])
+        assert scenes is not None
+        scenes.paint(axes, event.name)
+        axes.set_title(f"{_LABELS[event.name]}, {event.time:.1f} s".replace("\n", " "), fontsize=8.5, loc="left", color=INK)
     return figure
 
 

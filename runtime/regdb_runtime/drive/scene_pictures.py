@@ -1,0 +1,69 @@
+"""A picture of the scene at each event of a drive, drawn from its log and the map of its scene."""
+
+from __future__ import annotations
+
+import datetime
+import math
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from regdb_runtime.drive.events import events_of
+from regdb_runtime.drive.log import Log
+from regdb_runtime.drive.picture import Instant, PictureSettings, draw_scene
+from regdb_runtime.maps.road_map import RoadMap
+from regdb_runtime.observation import EgoState, Footprint, Indication, Observation, Track
+from regdb_runtime.trajectory import Trajectory
+
+Record = Mapping[str, Any]
+WORDS = {
+    "overtaking_begins": "Overtaking begins", "back_in_lane": "Back in lane", "overtaking_given_up": "Overtaking given up", "stopped": "Full stop",
+    "released": "Leaves the stop", "zone_detected": "Zone detected, braking begins", "reduced_speed": "Reduced speed reached",
+}  # fmt: skip
+VIEW = PictureSettings(along=70.0, across=44.0, pixels=1100)
+
+
+def instants(log: Log) -> dict[str, Instant]:
+    """Event -> what is drawn at it, the first of each name."""
+    found: dict[str, Instant] = {}
+    footprint = Footprint(**log.run["footprint"])
+    for event in events_of(log.run, log.ticks):
+        if event.name not in found:
+            tick = next(item for item in log.ticks if item["time"] == event.time)
+            found[event.name] = Instant(observation_of(tick), footprint, _plan_at(log, event.time))
+    return found
+
+
+def draw_events(drawn: Mapping[str, Instant], road_map: RoadMap, folder: Path) -> tuple[Path, ...]:
+    """`scene-<event>.png` for every event. Raises MissingExtra without matplotlib."""
+    files = []
+    folder.mkdir(parents=True, exist_ok=True)
+    for name, instant in drawn.items():
+        files.append(folder / f"scene-{name.replace('_', '-')}.png")
+        draw_scene(files[-1], road_map, instant, title=WORDS[name], settings=VIEW)
+    return tuple(files)
+
+
+def observation_of(tick: Record) -> Observation:
+    """What was observed, as far as a picture needs it."""
+    ego = {name: tick["ego"][name] for name in ("x", "y", "heading", "speed", "acceleration", "curvature", "turn_signal")}
+    tracks = tuple(Track(**{name: value for name, value in track.items() if name != "clearance"}) for track in tick["tracks"])
+    signals = {name: tuple(Indication(*lens) for lens in shown) for name, shown in tick["signals"].items()}
+    clock = datetime.datetime.fromisoformat(tick["clock"])
+    return Observation(tick["time"], clock, EgoState(**ego), tracks, signals)
+
+
+def _plan_at(log: Log, time: float) -> Trajectory | None:
+    """The plan last decided on by strategy, as far as the log keeps it: its points in the plane."""
+    plans = [tick["plan"] for tick in log.ticks if tick["plan"] is not None and time - 0.6 < tick["time"] <= time + 1e-6]
+    if not plans:
+        return None
+    plan = plans[-1]
+    held = {name: np.array(plan[name], dtype=float) for name in ("time", "x", "y", "speed", "station", "offset")}
+    nothing = np.zeros_like(held["time"])
+    heading = np.arctan2(np.gradient(held["y"]), np.gradient(held["x"])) if len(held["x"]) > 1 else nothing + math.nan
+    return Trajectory(
+        held["time"], held["x"], held["y"], heading, held["speed"], nothing, nothing, nothing, held["station"], held["offset"]
+    )  # fmt: skip
