@@ -87,7 +87,8 @@ def states() -> str:
         parts.append(f"## {item.name}\n\n{item.meaning} Prompt: {item.prompt or '(none: it asks no model)'}\n")
         rows = ((f"`{s.name}`", s.meaning + (" (extension)" if s.extension else ""), ", ".join(f"`{n}`" for n in s.next)) for s in own)
         parts.append(table(("state", "meaning", "next"), rows))
-    parts.append(f"## The whole machine\n\nAs `regdb show states --format mermaid` writes it; a star marks an extension.\n\n```mermaid\n{to_mermaid(machine)}```\n")
+    parts.append("## The whole machine\n\nAs `regdb show states --format mermaid` writes it; a star marks an extension.\n")
+    parts.append(f"```mermaid\n{to_mermaid(machine)}```\n")
     return "\n".join(parts)
 
 

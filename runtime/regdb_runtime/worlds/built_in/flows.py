@@ -10,7 +10,7 @@ from regdb_runtime.observation import TrackKind
 from regdb_runtime.worlds.built_in.lane_tables import LaneTables
 from regdb_runtime.worlds.built_in.mover import Mover, TrafficSettings, scattered
 from regdb_runtime.worlds.built_in.participants import driver
-from regdb_runtime.worlds.built_in.traffic import Traffic
+from regdb_runtime.worlds.built_in.traffic import TrafficModel
 from regdb_runtime.worlds.scene_spec import FlowSpec
 
 _LONGEST_ROUTE = 40
@@ -29,7 +29,7 @@ class Flow:
         self._count = 0
         self._next = spec.start + self._chance.expovariate(spec.per_hour / 3600.0)
 
-    def step(self, time: float, traffic: Traffic) -> None:
+    def step(self, time: float, traffic: TrafficModel) -> None:
         """Let in whoever has arrived by now, one at a time."""
         if time < self._next or time >= self._spec.until:
             return

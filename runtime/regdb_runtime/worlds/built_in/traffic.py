@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable
 from dataclasses import dataclass
+from typing import Protocol
 
 from regdb_runtime.observation import EgoState, Footprint, Track
 from regdb_runtime.planning.idm import idm_acceleration
@@ -32,6 +33,20 @@ class EgoAhead:
     lane: str | None
     distance: float
     since: float | None
+
+
+class TrafficModel(Protocol):
+    """Whoever drives everybody but the ego and the people on foot; `movers` are those in it or waiting to enter."""
+
+    movers: list[Mover]
+
+    def add_standing(self, track: Track) -> None: ...
+
+    def room_at(self, lane: str, station: float, half_length: float, gap: float) -> bool: ...
+
+    def step(self, time: float, step: float, ego: EgoState, footprint: Footprint, ahead: EgoAhead, people: Iterable[Pedestrian]) -> None: ...
+
+    def tracks(self, time: float) -> list[Track]: ...
 
 
 class Traffic:

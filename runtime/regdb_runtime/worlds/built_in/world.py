@@ -20,7 +20,7 @@ from regdb_runtime.worlds.built_in.mover import TrafficSettings
 from regdb_runtime.worlds.built_in.participants import cyclist, parked_track, vehicle
 from regdb_runtime.worlds.built_in.people import Pedestrian
 from regdb_runtime.worlds.built_in.signals import Signals
-from regdb_runtime.worlds.built_in.traffic import EgoAhead, Traffic
+from regdb_runtime.worlds.built_in.traffic import EgoAhead, Traffic, TrafficModel
 from regdb_runtime.worlds.eye import Eye, build_eye
 from regdb_runtime.worlds.road_builder import build_road_map, follow_turns
 from regdb_runtime.worlds.scene_spec import SceneSpec
@@ -52,7 +52,7 @@ class BuiltInWorld:
         self._ego_since: float | None = None
         self._people = [Pedestrian(item) for item in spec.pedestrians]
         self._parked = [parked_track(item, self._tables) for item in spec.parked]
-        self._traffic = Traffic(self._tables, self._signals, self._settings)
+        self._traffic: TrafficModel = Traffic(self._tables, self._signals, self._settings)
         for track in self._parked:
             self._traffic.add_standing(track)
         self._add_movers()

@@ -4,9 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass, field
+from typing import Literal
 
 from regdb_runtime.maps.road_map import Lane, RoadMap, Turn
 
+Control = Literal["", "stop", "yield"]
 UNDRIVEN = frozenset(("sidewalk", "crosswalk", "shoulder", "parking", "border", "restricted"))
 """Kinds of lanes that get no SUMO lane."""
 
@@ -23,12 +25,14 @@ class Edge:
 
 @dataclass(frozen=True, slots=True)
 class Link:
-    """One way across a node: from a lane to a lane, `inner` the junction lane between them (None: they meet), with its turn."""
+    """One way across a node: from a lane to a lane, `inner` the junction lane between them (None: they meet), with its turn and the sign
+    before it."""
 
     source: str
     target: str
     inner: str | None
     turn: Turn
+    control: Control = ""
 
 
 @dataclass(frozen=True, slots=True)
@@ -129,14 +133,21 @@ class _Meeting:
 
 def _node(road_map: RoadMap, driven: dict[str, Lane], edges: tuple[Edge, ...], node: str) -> Node:
     incoming = tuple(name for edge in edges if edge.end == node for name in edge.lanes)
-    links = tuple(link for name in incoming for link in _links(driven, driven[name]))
+    links = tuple(link for name in incoming for link in _links(driven, driven[name], _control(road_map, driven[name])))
     inner = [driven[link.inner] for link in links if link.inner is not None]
     junction = next((lane.junction for lane in inner if lane.junction is not None), None)
     lights = any(lane.lights for lane in (*inner, *(driven[name] for name in incoming if any(link.source == name for link in links))))
     return Node(node, incoming, links, bool(lights) and bool(road_map.lights), junction)
 
 
-def _links(driven: dict[str, Lane], lane: Lane) -> Iterator[Link]:
+def _control(road_map: RoadMap, lane: Lane) -> Control:
+    """The sign at a lane's stop line, by its MUTCD code: R1-1 STOP, R1-2 YIELD."""
+    names = () if lane.stop_line is None else lane.stop_line.signs
+    codes = [road_map.signs[name].code for name in names if name in road_map.signs]
+    return "stop" if any(code.startswith("R1-1") for code in codes) else "yield" if any(code.startswith("R1-2") for code in codes) else ""
+
+
+def _links(driven: dict[str, Lane], lane: Lane, control: Control) -> Iterator[Link]:
     """Ways on from a lane, from the rightmost turn to the leftmost, as SUMO orders them."""
     order = {"right": 0, "straight": 1, "left": 2, "u_turn": 3}
     found = []
@@ -147,7 +158,7 @@ def _links(driven: dict[str, Lane], lane: Lane) -> Iterator[Link]:
         if inner.junction is None:
             found.append(Link(lane.id, after, None, "straight"))
         else:
-            found += [Link(lane.id, target, after, inner.turn or "straight") for target in _beyond(driven, inner)]
+            found += [Link(lane.id, target, after, inner.turn or "straight", control) for target in _beyond(driven, inner)]
     yield from sorted(found, key=lambda link: (order[link.turn], link.target))
 
 

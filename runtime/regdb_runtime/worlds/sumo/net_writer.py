@@ -7,16 +7,18 @@ documentation, "SUMO Road Networks" (edges, lanes, junctions with requests, conn
 from __future__ import annotations
 
 from collections.abc import Iterator
-from itertools import pairwise
 from xml.sax.saxutils import quoteattr
 
 import numpy as np
 
+from regdb_runtime.maps.lines import at_stations, crossing, project, stations, without_repeats
 from regdb_runtime.maps.road_map import Floats, Lane, RoadMap
 from regdb_runtime.worlds.sumo.net_layout import Edge, Layout, Link, Node, layout
 
 DEFAULT_SPEED = 13.89
 """m/s for lanes without a limit on the map (50 km/h, SUMO's own default)."""
+LEAST_CUT = 0.5
+"""A stop line nearer than this to an end of its lane, metres, does not cut it."""
 _DIRECTIONS = {"right": "r", "straight": "s", "left": "l", "u_turn": "t"}
 _YIELDS = {"straight": 0, "right": 1, "left": 2, "u_turn": 3}
 """Order of right of way among crossing links without signs: a lower number goes first."""
@@ -48,7 +50,8 @@ def net_xml(road_map: RoadMap, laid: Layout | None = None) -> str:
 def _edge(road_map: RoadMap, edge: Edge) -> Iterator[str]:
     yield f'    <edge id="{edge.id}" from="{edge.start}" to="{edge.end}" priority="1">'
     for index, name in enumerate(edge.lanes):
-        yield f"        {_lane(road_map.lanes[name], f'{edge.id}_{index}', index)}"
+        lane = road_map.lanes[name]
+        yield f"        {_lane(lane, f'{edge.id}_{index}', index, _to_stop_line(lane)[0])}"
     yield "    </edge>"
 
 
@@ -56,16 +59,31 @@ def _inner_edges(road_map: RoadMap, node: Node) -> Iterator[str]:
     for index, link in enumerate(node.links):
         if link.inner is not None:
             yield f'    <edge id=":{node.id}_{index}" function="internal">'
-            yield f"        {_lane(road_map.lanes[link.inner], f':{node.id}_{index}_0', 0)}"
+            lane = road_map.lanes[link.inner]
+            beyond = _to_stop_line(road_map.lanes[link.source])[1]
+            whole = lane.center if beyond is None else without_repeats(np.concatenate((beyond, lane.center)))
+            yield f"        {_lane(lane, f':{node.id}_{index}_0', 0, whole)}"
             yield "    </edge>"
 
 
-def _lane(lane: Lane, name: str, index: int) -> str:
+def _to_stop_line(lane: Lane) -> tuple[Floats, Floats | None]:
+    """A lane's centre up to its stop line, and what lies beyond; SUMO's drivers stop at a lane's end, so it must end where the line is."""
+    if lane.stop_line is None:
+        return lane.center, None
+    (station,), _ = project(np.mean([[lane.stop_line.start, lane.stop_line.end]], axis=1), lane.center)
+    along = stations(lane.center)
+    if not LEAST_CUT < station < along[-1] - LEAST_CUT:
+        return lane.center, None
+    at = at_stations(lane.center, np.array([station]))
+    return np.concatenate((lane.center[along < station], at)), np.concatenate((at, lane.center[along > station]))
+
+
+def _lane(lane: Lane, name: str, index: int, center: Floats) -> str:
     speed = DEFAULT_SPEED if lane.speed_limit is None else lane.speed_limit
     allow = ' allow="bicycle"' if "bicycle_lane" in lane.kinds else ""
     width = float(lane.widths.mean())
-    sizes = f'speed="{speed:.4f}" length="{lane.length:.3f}" width="{width:.2f}"'
-    return f'<lane id="{name}" index="{index}"{allow} {sizes} shape={_shape(lane.center)}/>'
+    sizes = f'speed="{speed:.4f}" length="{stations(center)[-1]:.3f}" width="{width:.2f}"'
+    return f'<lane id="{name}" index="{index}"{allow} {sizes} shape={_shape(center)}/>'
 
 
 def _shape(points: Floats) -> str:
@@ -82,7 +100,7 @@ def _junction(road_map: RoadMap, laid: Layout, node: Node) -> Iterator[str]:
     ends = [road_map.lanes[name].center[-1] for name in node.incoming]
     ends += [road_map.lanes[name].center[0] for edge in laid.edges if edge.start == node.id for name in edge.lanes]
     x, y = np.mean(ends, axis=0)
-    kind = "dead_end" if not node.links else "traffic_light" if node.lights else "priority"
+    kind = _junction_type(node)
     incoming = " ".join(laid.sumo_lane[name] for name in node.incoming)
     inner = " ".join(laid.sumo_lane[link.inner] for link in node.links if link.inner is not None)
     shape = _shape(_outline(road_map, laid, node))
@@ -97,6 +115,13 @@ def _junction(road_map: RoadMap, laid: Layout, node: Node) -> Iterator[str]:
         gives_way = ["1" if foes[index][k] and _gives_way(link, node.links[k], road_map) else "0" for k in range(len(node.links))]
         yield f'        <request index="{index}" response="{"".join(reversed(gives_way))}" foes="{"".join(reversed(other))}" cont="0"/>'
     yield "    </junction>"
+
+
+def _junction_type(node: Node) -> str:
+    signs = {link.control for link in node.links}
+    if not node.links:
+        return "dead_end"
+    return "traffic_light" if node.lights else "allway_stop" if signs == {"stop"} else "priority_stop" if "stop" in signs else "priority"
 
 
 def _outline(road_map: RoadMap, laid: Layout, node: Node) -> Floats:
@@ -114,23 +139,17 @@ def _outline(road_map: RoadMap, laid: Layout, node: Node) -> Floats:
 
 def _foes(road_map: RoadMap, links: tuple[Link, ...]) -> list[list[bool]]:
     """Which links meet: those of different lanes that end in the same lane or whose paths cross."""
+
     def meet(one: Link, other: Link) -> bool:
         if one.source == other.source:
             return False
         if one.target == other.target:
             return True
-        return one.inner is not None and other.inner is not None and _cross(road_map.lanes[one.inner].center, road_map.lanes[other.inner].center)
+        if one.inner is None or other.inner is None:
+            return False
+        return crossing(road_map.lanes[one.inner].center, road_map.lanes[other.inner].center) is not None
 
     return [[meet(one, other) for other in links] for one in links]
-
-
-def _cross(one: Floats, other: Floats) -> bool:
-    """Whether two polylines cross."""
-    for a, b in pairwise(one):
-        for c, d in pairwise(other):
-            if _side(a, b, c) * _side(a, b, d) < 0 and _side(c, d, a) * _side(c, d, b) < 0:
-                return True
-    return False
 
 
 def _side(a: Floats, b: Floats, c: Floats) -> float:
@@ -138,7 +157,9 @@ def _side(a: Floats, b: Floats, c: Floats) -> float:
 
 
 def _gives_way(link: Link, other: Link, road_map: RoadMap) -> bool:
-    """Turns give way to those that go on straight; equals to the one that comes from the right."""
+    """Those before a sign give way to those without, turns to those that go on straight, equals to the one that comes from the right."""
+    if bool(link.control) != bool(other.control):
+        return bool(link.control)
     mine, theirs = _YIELDS[link.turn], _YIELDS[other.turn]
     if mine != theirs:
         return mine > theirs
@@ -151,11 +172,18 @@ def _connections(laid: Layout, node: Node) -> Iterator[str]:
         source, target = _place(laid.sumo_lane[link.source]), _place(laid.sumo_lane[link.target])
         ends = f'from="{source[0]}" to="{target[0]}" fromLane="{source[1]}" toLane="{target[1]}"'
         via = f' via=":{node.id}_{index}_0"' if link.inner is not None else ""
-        light = f' tl="{node.id}" linkIndex="{index}" state="o"' if node.lights else ' state="M"' if link.turn == "straight" else ' state="m"'
+        light = f' tl="{node.id}" linkIndex="{index}" state="o"' if node.lights else f' state="{_state(node, link)}"'
         turn = f'dir="{_DIRECTIONS[link.turn]}"'
         yield f"    <connection {ends}{via} {turn}{light}/>"
         if link.inner is not None:
             yield f'    <connection from=":{node.id}_{index}" to="{target[0]}" fromLane="0" toLane="{target[1]}" {turn} state="M"/>'
+
+
+def _state(node: Node, link: Link) -> str:
+    """SUMO's letter for how a link gives way: `w` all-way stop, `s` stop, `m` minor, `M` major."""
+    if link.control == "stop":
+        return "w" if _junction_type(node) == "allway_stop" else "s"
+    return "M" if link.turn == "straight" and not link.control else "m"
 
 
 def _place(sumo_lane: str) -> tuple[str, str]:
