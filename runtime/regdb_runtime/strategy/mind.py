@@ -67,7 +67,7 @@ class Mind:
     def think(self, observation: Observation, memory: Memory, start: EgoState, strategic: bool) -> Thought:
         """One tick: among all states that may follow, or in the state in force alone; if that has no lawful plan, among all after all."""
         picture = self.strategist.picture(observation, memory, self._free_speed)
-        self.history.update(observation)
+        self.history.update(observation, picture.lane_path, picture.junction)
         predictions = self.predictor.predict(self._mattering(picture), self._times)
         if not strategic:
             own = self._evaluate((self.strategist.own(picture),), picture, start, predictions)
@@ -135,6 +135,6 @@ def make_mind(
     evaluator = Evaluator(
         scenes, assessor, footprint, settings.lattice, settings.limits, settings.comfortable, settings.beyond_comfort, settings.cost
     )  # fmt: skip
-    return Mind(strategist, evaluator, History(), predictor or ConstantVelocity(), settings)
+    return Mind(strategist, evaluator, scenes.history(), predictor or ConstantVelocity(), settings)
 
 
