@@ -1,13 +1,14 @@
 """Contacts and clearances of planned motion with predicted road users, over the whole swept time, between the instants too.
 
-Between two instants poses go over linearly into one another (heading by the shorter way). An interval in which the circles about two
-rectangles could meet is cut so finely that no point of one moves more than `RESOLUTION` against the other from cut to cut; at every cut the
+Between two instants poses go over linearly into one another (heading by the shorter way). An interval in which the circles, and then the
+rectangles, could meet at all is cut so finely that no point of one moves more than `RESOLUTION` against the other from cut to cut; at every cut the
 rectangles are tested grown by half of that. So nothing is jumped over, however thin: a contact of the interpolated motion is always found, and a
 miss by more than `RESOLUTION / sqrt(2)` (4 cm) is never called one.
 """
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Final
@@ -22,8 +23,8 @@ from regdb_runtime.trajectory import Candidates, Trajectory
 
 Floats = NDArray[np.float64]
 Integers = NDArray[np.int64]
-Ends = tuple[tuple[Floats, Floats], tuple[Floats, Floats], tuple[Floats, Floats]]
-"""x, y and heading at both ends of some intervals."""
+Own = tuple[Floats, Floats, Floats, Floats]
+"""Middle x and y of the vehicle's rectangle and its heading (T,), and the change of heading to the next instant (T - 1,)."""
 
 RESOLUTION: Final = 0.06
 """Relative motion from cut to cut, metres."""
@@ -33,7 +34,7 @@ MOST_CUTS: Final = 64
 
 @dataclass(frozen=True, eq=False)
 class Contacts:
-    """For k plans: time of the first contact (seconds from now, inf without one) and the row of the road user in the predictions (-1)."""
+    """For k plans: time of the first contact (seconds from now, never later than it is, by 6 cm of motion earlier at most; inf without one) and the row of the road user in the predictions (-1)."""
 
     time: Floats
     track: Integers
@@ -45,64 +46,96 @@ class Contacts:
 
 
 class Sweeper:
-    """Predictions made ready once per tick, to test plans against them one by one in the order of their cost."""
+    """Predictions made ready once per tick, to test plans against them one by one in the order of their cost.
 
-    def __init__(self, predictions: Predictions, footprint: Footprint, margin: float = 0.0) -> None:
+    `among`: plans that will be tested; whom none of them comes near is left out from the start.
+    """
+
+    def __init__(self, predictions: Predictions, footprint: Footprint, margin: float = 0.0, among: Candidates | None = None) -> None:
         self.predictions, self.footprint, self.margin = predictions, footprint, margin
-        self._radius = np.hypot(predictions.length, predictions.width) / 2 + float(np.hypot(footprint.length, footprint.width)) / 2 + margin
-        self._reach = predictions.reach if len(predictions) else np.zeros((0, len(predictions.time)))
-        self._wide = self._radius[:, None] + self._reach
+        self._wide = np.hypot(predictions.length, predictions.width) / 2 + math.hypot(footprint.length, footprint.width) / 2 + margin
+        self._users = np.arange(len(predictions)) if among is None else self._reachable(among)
+        x, y, heading, reach = (part[self._users] for part in (predictions.x, predictions.y, predictions.heading, predictions.reach))
+        self._x, self._y, self._heading = x, y, heading
+        self._turn = _turns(heading)
+        self._grown = np.maximum(reach[:, 1:], reach[:, :-1]) + margin
+        self._half = predictions.length[self._users, None] / 2, predictions.width[self._users, None] / 2
+        self._middle = (x[:, 1:] + x[:, :-1]) / 2, (y[:, 1:] + y[:, :-1]) / 2
+        self._step = x[:, 1:] - x[:, :-1], y[:, 1:] - y[:, :-1]
+        middle = heading[:, :-1] + self._turn / 2
+        self._direction = np.cos(middle), np.sin(middle)
+        self._round = self._wide[self._users, None] - margin + self._grown
+
+    def _reachable(self, plans: Candidates) -> Integers:
+        """Rows of users that come into the square about all plans at some instant, grown by what each moves until the next."""
+        seen, steps = self.predictions, min(len(plans.time), len(self.predictions.time))
+        near = np.ones((len(seen), steps), dtype=bool)
+        for own, other in ((plans.x, seen.x), (plans.y, seen.y)):
+            low, high = own[:, :steps].min(axis=0), own[:, :steps].max(axis=0)
+            room = self._wide[:, None] + abs(self.footprint.center) + seen.reach[:, :steps]
+            room += _widest(other[:, :steps]) + np.maximum(_widest(low[None]), _widest(high[None]))
+            near &= (other[:, :steps] >= low - room) & (other[:, :steps] <= high + room)
+        return np.flatnonzero(near.any(axis=1))
 
     def first_contact(self, x: Floats, y: Floats, heading: Floats) -> tuple[float, int]:
         """Time and row of the first contact of one plan (rear axle, (T,) each); (inf, -1) without one."""
-        seen = self.predictions
-        if not len(seen):
-            return np.inf, -1
-        steps = min(len(x), len(seen.time))
-        own_x, own_y = x + self.footprint.center * np.cos(heading), y + self.footprint.center * np.sin(heading)
-        dx, dy = seen.x[:, :steps] - own_x[:steps], seen.y[:, :steps] - own_y[:steps]
-        away = np.sqrt(dx * dx + dy * dy)
-        room = away - self._wide[:, :steps]
-        # the middle of one goes from one end of an interval to the other in a straight line, as the other one sees it: it comes nearer than
-        # both ends by half that line at most
-        line = np.hypot(dx[:, 1:] - dx[:, :-1], dy[:, 1:] - dy[:, :-1])
-        near = np.minimum(room[:, :-1], room[:, 1:]) <= line / 2
-        users, intervals = np.nonzero(near)
+        if not len(self._users):
+            return math.inf, -1
+        cos, sin = np.cos(heading), np.sin(heading)
+        own_x, own_y = x + self.footprint.center * cos, y + self.footprint.center * sin
+        turn = _turns(heading)
+        # An interval is tested at its middle, grown by all that one can move against the other until either end
+        dx = self._middle[0] - (own_x[1:] + own_x[:-1]) / 2
+        dy = self._middle[1] - (own_y[1:] + own_y[:-1]) / 2
+        moved = np.hypot(self._step[0] - (own_x[1:] - own_x[:-1]), self._step[1] - (own_y[1:] - own_y[:-1]))
+        moved += np.abs(self._turn) * self._half[0] + np.abs(turn) * (self.footprint.length / 2)
+        within = self._round + moved / 2
+        users, intervals = np.nonzero(dx * dx + dy * dy <= within * within)
         if not len(users):
-            return np.inf, -1
-        return self._finely(own_x, own_y, heading, users, intervals)
+            return math.inf, -1
+        middle = heading[intervals] + turn[intervals] / 2
+        own = boxes(0.0, 0.0, middle, self.footprint.length, self.footprint.width)
+        pair = users, intervals
+        other = Boxes(
+            dx[pair], dy[pair], self._direction[0][pair], self._direction[1][pair], self._half[0][users, 0], self._half[1][users, 0]
+        )
+        touching = overlap(own.grown(self._grown[pair] + moved[pair] / 2), other)
+        if not touching.any():
+            return math.inf, -1
+        return self._finely((own_x, own_y, heading, turn), users[touching], intervals[touching], moved[pair][touching])
 
-    def _finely(self, x: Floats, y: Floats, heading: Floats, users: Integers, intervals: Integers) -> tuple[float, int]:
+    def _finely(self, own: Own, users: Integers, intervals: Integers, moved: Floats) -> tuple[float, int]:
         """The first contact within some intervals of some users, in the order of time (of equal times the first row)."""
         order = np.argsort(intervals, kind="stable")
-        for part in _pieces(order, 32):
-            rows, starts = users[part], intervals[part]
-            shares, own, other, grown = self._cuts(x, y, heading, rows, starts)
-            hits = overlap(own.grown(grown), other)
-            if hits.any():
-                time = self.predictions.time
-                when = np.where(hits, time[starts, None] + shares * (time[starts + 1] - time[starts])[:, None], np.inf)
-                first = when.min(axis=1)
-                best = int(np.lexsort((rows, first))[0])
-                return float(first[best]), int(rows[best])
-        return np.inf, -1
+        first: tuple[float, int] = math.inf, -1
+        for start in range(0, len(order), 6):
+            part = order[start : start + 6]
+            if self.predictions.time[intervals[part[0]]] >= first[0]:
+                break
+            found = self._cut(own, users[part], intervals[part], moved[part])
+            if found[1] >= 0 and (found[0], found[1]) < (first[0], first[1]):
+                first = found
+        return first
 
-    def _cuts(self, x: Floats, y: Floats, heading: Floats, rows: Integers, starts: Integers) -> tuple[Floats, Boxes, Boxes, Floats]:
-        """Both rectangles at the cuts of each interval, (I, C), and how much to grow them."""
-        seen = self.predictions
-        own = _ends(x, y, heading, starts)
-        other = _ends(seen.x, seen.y, seen.heading, starts, rows)
-        moved = np.hypot(*(own[i][1] - own[i][0] - other[i][1] + other[i][0] for i in (0, 1)))
-        moved += np.abs(own[2][1] - own[2][0]) * self.footprint.length / 2 + np.abs(other[2][1] - other[2][0]) * seen.length[rows] / 2
-        cuts = int(np.clip(np.ceil(float(moved.max()) / RESOLUTION), 1, MOST_CUTS)) + 1
-        shares = np.linspace(0.0, 1.0, cuts)
-        reach = np.maximum(self._reach[rows, starts], self._reach[rows, starts + 1])
-        grown = self.margin + reach + moved / (cuts - 1) / 2
-        x_own, y_own, heading_own = (_between(part, shares) for part in own)
-        x_other, y_other, heading_other = (_between(part, shares) for part in other)
-        ours = boxes(x_own, y_own, heading_own, self.footprint.length, self.footprint.width)
-        theirs = boxes(x_other, y_other, heading_other, seen.length[rows, None], seen.width[rows, None])
-        return shares, ours, theirs, grown[:, None]
+    def _cut(self, own: Own, users: Integers, intervals: Integers, moved: Floats) -> tuple[float, int]:
+        """The same, for intervals tested together at every cut."""
+        x, y, heading, turn = own
+        cuts = min(max(math.ceil(float(moved.max()) / RESOLUTION), 1), MOST_CUTS)
+        shares = np.linspace(0.0, 1.0, cuts + 1)
+        at, other_at = intervals, (users, intervals)
+        dx = _between(self._x[other_at] - x[at], self._step[0][other_at] - (x[at + 1] - x[at]), shares)
+        dy = _between(self._y[other_at] - y[at], self._step[1][other_at] - (y[at + 1] - y[at]), shares)
+        ours = boxes(0.0, 0.0, _between(heading[at], turn[at], shares), self.footprint.length, self.footprint.width)
+        facing = _between(self._heading[other_at], self._turn[other_at], shares)
+        theirs = boxes(dx, dy, facing, 2 * self._half[0][users], 2 * self._half[1][users])
+        hits = overlap(ours.grown((self._grown[other_at] + moved / cuts / 2)[:, None]), theirs)
+        if not hits.any():
+            return math.inf, -1
+        time = self.predictions.time
+        earliest = np.maximum(shares - 0.5 / cuts, 0.0)  # a cut speaks for half of what lies to either side of it
+        when = np.where(hits, _between(time[at], time[at + 1] - time[at], earliest), np.inf).min(axis=1)
+        best = int(np.lexsort((users, when))[0])
+        return float(when[best]), int(self._users[users[best]])
 
 
 def first_contact(
@@ -118,7 +151,7 @@ def best_free(
     plans: Candidates, order: Integers, footprint: Footprint, predictions: Predictions, margin: float = 0.0
 ) -> tuple[int | None, dict[int, tuple[float, str]]]:
     """The first plan of `order` that touches nothing, and for those tried before it the time of contact and whom they touch."""
-    sweeper = Sweeper(predictions, footprint, margin)
+    sweeper = Sweeper(predictions, footprint, margin, plans)
     hit: dict[int, tuple[float, str]] = {}
     for index in order.tolist():
         time, row = sweeper.first_contact(plans.x[index], plans.y[index], plans.heading[index])
@@ -169,28 +202,24 @@ def _own(x: Floats, y: Floats, heading: Floats, footprint: Footprint) -> Boxes:
     return Boxes(x + footprint.center * cos, y + footprint.center * sin, cos, sin, *half)
 
 
-def _ends(x: Floats, y: Floats, heading: Floats, starts: Integers, rows: Integers | None = None) -> Ends:
-    """Values at both ends of some intervals; the second heading is the one nearest to the first."""
-    first = starts if rows is None else (rows, starts)
-    last = starts + 1 if rows is None else (rows, starts + 1)
-    turn = heading[last] - heading[first]
-    turn -= 2 * np.pi * np.round(turn / (2 * np.pi))
-    return (x[first], x[last]), (y[first], y[last]), (heading[first], heading[first] + turn)
+def _between(start: Floats, change: Floats, shares: Floats) -> Floats:
+    return start[:, None] + change[:, None] * shares
 
 
-def _between(ends: tuple[Floats, Floats], shares: Floats) -> Floats:
-    return ends[0][:, None] + (ends[1] - ends[0])[:, None] * shares
+def _turns(heading: Floats) -> Floats:
+    """Change of heading from each instant to the next, by the shorter way."""
+    turn = np.diff(heading, axis=-1)
+    return np.asarray(turn - 2 * np.pi * np.round(turn / (2 * np.pi)))
+
+
+def _widest(values: Floats) -> Floats:
+    """The greatest step of each row, (k, 1)."""
+    return np.asarray(np.abs(np.diff(values, axis=1)).max(axis=1, keepdims=True, initial=0.0))
 
 
 def _refined(values: Floats, shares: Floats, turns: bool = False) -> Floats:
     """Values (k, T) with looks between the instants, (k, 1 + (T - 1) * len(shares))."""
-    step = np.diff(values, axis=1)
-    if turns:
-        step -= 2 * np.pi * np.round(step / (2 * np.pi))
+    step = _turns(values) if turns else np.diff(values, axis=1)
     between = values[:, :-1, None] + step[:, :, None] * shares
     return np.concatenate((values[:, :1], between.reshape(len(values), -1)), axis=1)
 
-
-def _pieces(order: Integers, size: int) -> Iterator[Integers]:
-    for start in range(0, len(order), size):
-        yield order[start : start + size]

@@ -94,18 +94,20 @@ def _scaled(parts: Mapping[str, Floats], scales: Sequence[tuple[str, float]]) ->
 
 def mean_acceleration(candidates: Candidates) -> Floats:
     """Mean of |acceleration| over the plan, so that braking counts, m/s^2."""
-    return np.asarray(np.abs(candidates.acceleration).mean(axis=1))
+    rows = candidates.acceleration.shape[1]
+    return np.asarray(np.abs(candidates.acceleration) @ np.full(rows, 1.0 / rows))
 
 
 def speed_variance(candidates: Candidates) -> Floats:
     """Variance of the speed over the plan, m^2/s^2."""
-    apart = candidates.speed - candidates.speed.mean(axis=1, keepdims=True)
-    return np.asarray(np.einsum("ij,ij->i", apart, apart) / apart.shape[1])
+    rows = candidates.speed.shape[1]
+    apart = candidates.speed - (candidates.speed @ np.full(rows, 1.0 / rows))[:, None]
+    return np.asarray(np.einsum("ij,ij->i", apart, apart) / rows)
 
 
 def max_curvature(candidates: Candidates) -> Floats:
     """Greatest |curvature| over the plan, 1/m."""
-    return np.asarray(np.maximum(candidates.curvature.max(axis=1), -candidates.curvature.min(axis=1)))
+    return np.asarray(np.abs(candidates.curvature).max(axis=1))
 
 
 def jerk(candidates: Candidates) -> Floats:

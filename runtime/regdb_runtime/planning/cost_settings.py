@@ -47,9 +47,9 @@ class CostSettings:
     safety: tuple[tuple[str, float], ...] = ()
     comfort: tuple[tuple[str, float], ...] = ()
     wanted_clearance: float = 1.5
-    instants: int = 7
+    instants: int = 6
     nearby: float = 40.0
-    nearby_most: int = 8
+    nearby_most: int = 6
     safe: SafeDistances = field(default_factory=SafeDistances)
 
     @property

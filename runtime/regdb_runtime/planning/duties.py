@@ -34,27 +34,30 @@ def _topics(words: str) -> frozenset[str]:
 
 DUTIES: tuple[Duty, ...] = (
     Duty("persons on foot", _topics(
-        "pedestrian-crosswalk pedestrian-due-care blind-pedestrian pass-stopped-at-crosswalk school-bus safety-zone pass-streetcar sidewalk "
-        "driving-on-sidewalk emergency-incident-zone equestrian-crossing crosswalk-blocking"
+        "reckless-driving speed-contest pedestrian-crosswalk pedestrian-due-care blind-pedestrian pass-stopped-at-crosswalk school-bus "
+        "safety-zone pass-streetcar sidewalk driving-on-sidewalk emergency-incident-zone equestrian-crossing crosswalk-blocking"
     )),
-    Duty("persons on bicycles", _topics("passing-bicycle turn-across-bicycle-lane bicycle-lane"), _topics("min_clearance")),
+    Duty("persons on bicycles and at work", _topics(
+        "passing-bicycle turn-across-bicycle-lane bicycle-lane pass-animals pass-waste-service fire-hose"
+    ), _topics("min_clearance")),
     Duty("tracks", _topics("rail-crossing-stop rail-crossing-stop-classes rail-stop-sign rail-stop-exempt-sign rail-stop-classes")),
     Duty("signals and stops", _topics(
-        "red-signal signal-stop stop-sign flashing-signal signal-not-at-intersection lane-control-signal yellow-signal obey-signals "
+        "red-signal signal-stop stop-sign flashing-signal signal-not-at-intersection lane-control-signal green-signal yellow-signal obey-signals "
         "obey-officers obey-traffic-directors alley-stop"
     )),
     Duty("right of way", _topics(
         "emergency-vehicle-yield emergency-vehicle-care stop-sign-right-of-way yield-sign intersection-right-of-way left-turn-yield "
-        "entering-highway turn-safely move-over u-turn-view"
+        "entering-highway turn-safely start-backing blocking-intersection move-over u-turn-view"
     )),
     Duty("direction of travel", _topics("one-way drive-right divided-highway separate-roadways meeting-vehicles pass-clear-view pass-on-grade")),
     Duty("distance", _topics("follow-too-closely truck-following-distance follow-emergency-vehicle"), _topics("min_following_distance")),
     Duty("markings and passing", _topics(
-        "double-lines laned-roadway lane-use three-lane-roadway two-way-left-turn-lane pass-left pass-on-right pass-return lane-splitting"
+        "double-lines laned-roadway lane-use three-lane-roadway two-way-left-turn-lane pass-left pass-on-right pass-return "
+        "being-overtaken hov-lane transit-lane lane-splitting"
     )),
     Duty("speed", _topics(
-        "basic-speed maximum-speed maximum-speed-70 prima-facie-limits work-zone-speed variable-speed bridge-speed speed-over-100"
-    ), _topics("max_speed")),
+        "basic-speed maximum-speed maximum-speed-70 minimum-speed prima-facie-limits work-zone-speed variable-speed bridge-speed speed-over-100"
+    ), _topics("max_speed min_speed")),
     Duty("signs and turns", _topics(
         "obey-signs turn-signs turn-bans turn-position turn-signal signal-method u-turn-intersection u-turn-residence u-turn-business"
     )),

@@ -48,4 +48,4 @@ class SafeDistances:
 
 def shortfall(gap: Floats, safe: Floats) -> Floats:
     """How much of the safe distance is missing, from 0 (kept) to 1 (touching or past)."""
-    return np.asarray(np.clip(1.0 - gap / np.maximum(safe, 1e-9), 0.0, 1.0))
+    return np.asarray(np.minimum(np.maximum(1.0 - gap / np.maximum(safe, 1e-9), 0.0), 1.0))

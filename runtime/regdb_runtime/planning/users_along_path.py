@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,7 +19,7 @@ from regdb_runtime.planning.prediction import Path, Predictions
 from regdb_runtime.planning.safe_distance import SafeDistances, shortfall
 from regdb_runtime.trajectory import Candidates
 
-Floats = NDArray[np.float64]
+Floats = NDArray[Any]
 
 
 @dataclass(frozen=True, eq=False)
@@ -63,46 +64,94 @@ def nearness(candidates: Candidates, settings: CostSettings, users: UsersAlongPa
     """Worst over users and instants, (N,) from 0 to 1: how much of the wanted clearance is missing, and of the safe longitudinal and lateral
     distance. Of the safe distances (arXiv:1708.06374) each counts only while the other is missing too: beside one another or far behind
     one another nobody is in danger. Whoever drives behind in our own way keeps his distance himself."""
-    if not len(users):
-        zero = np.zeros(len(candidates))
-        return {"clearance": zero, "rss_longitudinal": zero, "rss_lateral": zero}
-    at = users.indices
-    station, offset, speed = (part[:, None, at] for part in (candidates.station, candidates.offset, candidates.speed))
-    ahead, aside = users.s - users.center - station, users.d - offset
-    gap_along = np.abs(ahead) - (users.half_along + users.half_length)
-    gap_across = np.abs(aside) - (users.half_across + users.half_width)
-    short_along = _short_along(gap_along, ahead, speed, users, settings.safe)
-    short_along *= ~_behind_us_now(users, float(candidates.station[0, 0]), float(candidates.offset[0, 0]))[:, None]
-    short_across = _short_across(gap_across, aside, candidates, users, settings.safe)
-    near = np.hypot(np.maximum(gap_along, 0.0), np.maximum(gap_across, 0.0))
-    return {
-        "clearance": 1.0 - np.minimum(near.min(axis=(1, 2)) / settings.wanted_clearance, 1.0),
-        "rss_longitudinal": np.asarray((short_along * (short_across > 0.0)).max(axis=(1, 2))),
-        "rss_lateral": np.asarray((short_across * (short_along > 0.0)).max(axis=(1, 2))),
-    }
+    found = {name: np.zeros(len(candidates)) for name in ("clearance", "rss_longitudinal", "rss_lateral")}
+    if len(users):
+        plans = _at(candidates, users, settings.safe)
+        for user in range(len(users)):
+            _worsen(found, plans, users, user, settings)
+    return found
 
 
-def _short_along(gap: Floats, ahead: Floats, speed: Floats, users: UsersAlongPath, safe: SafeDistances) -> Floats:
-    """Definition 1 for whoever goes the same way (the rear one needs the gap), both stopping ways for one ahead who comes towards us."""
-    towards = users.s_dot < 0.0
-    theirs = np.where(towards, safe.rear(np.abs(users.s_dot)), -safe.front(users.s_dot))
-    behind = np.where(towards, -np.inf, safe.rear(users.s_dot))
-    needed = np.where(ahead > 0.0, safe.rear(speed) + theirs, behind - safe.front(speed))
-    return shortfall(gap, np.maximum(needed, 0.0))
+@dataclass(frozen=True, eq=False)
+class _Plans:
+    """All plans at the instants looked at, (t, N): the instants first, so that the worst of a plan is found row by row; stations from `origin` on. `rear`, `front`: the
+    plan's halves of the longitudinal distance; `leftwards`, `rightwards`: those of the lateral one, towards either side. `lowest`, `highest`:
+    offsets among all plans, (t, 1); `most_needed`: the greatest of their lateral halves."""
+
+    origin: float
+    station: Floats
+    offset: Floats
+    rear: Floats
+    front: Floats
+    leftwards: Floats
+    rightwards: Floats
+    lowest: Floats
+    highest: Floats
+    most_needed: float
 
 
-def _short_across(gap: Floats, aside: Floats, candidates: Candidates, users: UsersAlongPath, safe: SafeDistances) -> Floats:
-    """Definition 6, with the plan's lateral speed between neighbouring instants."""
+def _at(candidates: Candidates, users: UsersAlongPath, safe: SafeDistances) -> _Plans:
     at = users.indices
     after, before = np.minimum(at + 1, len(candidates.time) - 1), np.maximum(at - 1, 0)
-    rate = (candidates.offset[:, after] - candidates.offset[:, before]) / (candidates.time[after] - candidates.time[before])
-    leftwards, rightwards = safe.side(rate)[:, None, :], safe.side(-rate)[:, None, :]
-    on_left = aside > 0.0
-    needed = np.where(on_left, leftwards + safe.side(-users.d_dot), rightwards + safe.side(users.d_dot))
-    return shortfall(gap, safe.fluctuation_margin + np.maximum(needed, 0.0))
+    origin = candidates.station[0, 0]
+    station = _sharp((candidates.station[:, at] - origin).T)
+    offset, speed = _sharp(candidates.offset[:, at].T), _sharp(candidates.speed[:, at].T)
+    rate = (candidates.offset[:, after] - candidates.offset[:, before]).T / (candidates.time[after] - candidates.time[before])[:, None]
+    rate = _sharp(rate)
+    left, right = safe.side(rate), safe.side(-rate)
+    return _Plans(
+        float(origin), station + np.float32(users.center), offset, safe.rear(speed), safe.front(speed), left, right,
+        offset.min(axis=1, keepdims=True), offset.max(axis=1, keepdims=True), max(float(left.max()), float(right.max())),
+    )  # fmt: skip
 
 
-def _behind_us_now(users: UsersAlongPath, station: float, offset: float) -> NDArray[np.bool_]:
-    """Who is behind the vehicle in its own way at the first instant, (M,)."""
-    behind = users.s[:, 0] < station + users.center
-    return np.asarray(behind & (np.abs(users.d[:, 0] - offset) < users.half_across[:, 0] + users.half_width))
+def _sharp(values: Floats) -> Floats:
+    """In single precision, row by row: 0.01 mm over a hundred metres, at half the memory and time."""
+    return np.ascontiguousarray(values, dtype=np.float32)
+
+
+def _worsen(found: Mapping[str, Floats], plans: _Plans, users: UsersAlongPath, user: int, settings: CostSettings) -> None:
+    """Take one user into the worst so far; one that no plan comes near is done at once."""
+    safe, wanted = settings.safe, settings.wanted_clearance
+    s, d, s_dot, d_dot, half_along, half_across = (
+        _sharp(part[user])[:, None] for part in (users.s - plans.origin, users.d, users.s_dot, users.d_dot, users.half_along, users.half_across)
+    )
+    to_right, to_left = safe.side(-d_dot), safe.side(d_dot)
+    least = np.maximum(d - plans.highest, plans.lowest - d) - half_across - users.half_width
+    if (least > np.maximum(wanted, safe.fluctuation_margin + plans.most_needed + np.maximum(to_right, to_left))).all():
+        return
+    aside, ahead = d - plans.offset, s - plans.station
+    gap_across, gap_along = np.abs(aside) - (half_across + users.half_width), np.abs(ahead) - (half_along + users.half_length)
+    _worsen_clearance(found["clearance"], gap_along, gap_across, wanted)
+    if _behind_us_now(users, user, plans.origin + float(plans.station[0, 0]), float(plans.offset[0, 0])):
+        return
+    needed_across = _choose(aside > 0.0, plans.leftwards + to_right, plans.rightwards + to_left)
+    across = shortfall(gap_across, safe.fluctuation_margin + np.maximum(needed_across, 0.0))
+    along = shortfall(gap_along, np.maximum(_needed_along(ahead, plans, s_dot, safe), 0.0))
+    np.maximum(found["rss_longitudinal"], (along * (across > 0.0)).max(axis=0), out=found["rss_longitudinal"])
+    np.maximum(found["rss_lateral"], (across * (along > 0.0)).max(axis=0), out=found["rss_lateral"])
+
+
+def _choose(where: NDArray[np.bool_], yes: Floats, no: Floats) -> Floats:
+    """As numpy's where; most users are on one side of all plans, and then nothing need be mixed."""
+    return yes if where.all() else np.where(where, yes, no) if where.any() else no
+
+
+def _worsen_clearance(found: Floats, gap_along: Floats, gap_across: Floats, wanted: float) -> None:
+    out_along, out_across = np.maximum(gap_along, 0.0), np.maximum(gap_across, 0.0)
+    nearest = np.sqrt((out_along * out_along + out_across * out_across).min(axis=0))
+    np.maximum(found, 1.0 - np.minimum(nearest / wanted, 1.0), out=found)
+
+
+def _needed_along(ahead: Floats, plans: _Plans, s_dot: Floats, safe: SafeDistances) -> Floats:
+    """Definition 1 for whoever goes the same way (the rear one needs the gap), both stopping ways for one ahead who comes towards us."""
+    towards = s_dot < 0.0
+    theirs = np.where(towards, safe.rear(np.abs(s_dot)), -safe.front(s_dot))
+    behind = np.where(towards, -np.inf, safe.rear(s_dot))
+    return _choose(ahead > 0.0, plans.rear + theirs, behind - plans.front)
+
+
+def _behind_us_now(users: UsersAlongPath, user: int, center: float, offset: float) -> bool:
+    """Whether a user is behind the vehicle in its own way at the first instant."""
+    within = abs(float(users.d[user, 0]) - offset) < float(users.half_across[user, 0]) + users.half_width
+    return within and float(users.s[user, 0]) < center
