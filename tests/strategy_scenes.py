@@ -10,6 +10,7 @@ from regdb_runtime.database import RegulationDatabase
 from regdb_runtime.maps.road_map import Marking, RoadMap, Turn
 from regdb_runtime.maps.route import Route, route_along
 from regdb_runtime.observation import EgoState, Footprint, Indication, Observation, Track
+from regdb_runtime.scenes.tellers import tellers
 from regdb_runtime.strategy.machine import Machine
 from regdb_runtime.strategy.maneuvers import Strategist
 from regdb_runtime.strategy.memory import Memory
@@ -19,6 +20,8 @@ from regdb_runtime.worlds.road_builder import build_road_map, follow_turns
 from regdb_runtime.worlds.road_spec import Arm, Control, JunctionSpec, Piece, Pose, RoadSpec, SignalPhase, StreetsSpec
 
 from regdb.front import database
+from regdb.situation import quiet_facts
+from regdb.vocabulary import Value
 
 CLOCK = datetime.datetime(2026, 3, 4, 12, 0)  # local time, as an observation has it
 LENGTH = 300.0
@@ -31,6 +34,13 @@ WEST = "first.e.1"
 def law() -> RegulationDatabase:
     """The shipped codes."""
     return RegulationDatabase.open(database())
+
+
+@cache
+def quiet_eye() -> dict[str, Value]:
+    """What an eye reports that sees nothing of note: the quiet value of every fact that is the eye's to tell."""
+    asked = tellers(law().vocabulary)
+    return {name: value for name, value in quiet_facts(law().vocabulary).items() if asked[name] == "eye"}
 
 
 def crossing(control: Control = "signal", lanes: int = 2, width: float = 3.5, divider: Marking = "dashed") -> RoadMap:
@@ -88,7 +98,8 @@ def cyclist(x: float, speed: float = 4.5, lane: int = 1, from_edge: float = 0.1,
 def seen(state: EgoState, *tracks: Track, time: float = 0.0, light: str = "", road_map: RoadMap | None = None, **facts: Any) -> Observation:
     """An observation; `light`: the colour that every light of the map shows."""
     signals = {name: (Indication(light),) for name in road_map.lights} if light and road_map else {}  # type: ignore[arg-type]
-    return Observation(time, CLOCK + datetime.timedelta(seconds=time), state, tracks, signals, {k.replace("__", "."): v for k, v in facts.items()})
+    eye = quiet_eye() | {name.replace("__", "."): value for name, value in facts.items()}
+    return Observation(time, CLOCK + datetime.timedelta(seconds=time), state, tracks, signals, eye)
 
 
 def offers(plans: Strategist, observation: Observation, state: str = "lane_following.go_straight", **memory: Any) -> dict[str, str]:

@@ -19,7 +19,7 @@ class PlannerSettings:
     `conservative` leaves passing undecided above 30 mph, and `statute_only` decides nothing.
 
     `strategic_period`: seconds between choices among states (2 Hz, as in the paper). Motion is planned at every call of `step`, 10 Hz or as the
-    caller likes. `warm`: whether the law's decisions for all transitions are compiled at the first tick rather than when first needed.
+    caller likes.
 
     `limits` are what the vehicle can do, `comfortable` what is kept where law and safety leave it; `beyond_comfort` is what C_comfort grows by
     else. `margin`: metres kept to everybody's predicted body, for what tracking and sensing leave.
@@ -27,7 +27,6 @@ class PlannerSettings:
 
     interpretation: str = "rss"
     strategic_period: float = 0.5
-    warm: bool = True
     margin: float = 0.1
     strategy: StrategySettings = field(default_factory=StrategySettings)
     lattice: LatticeSettings = field(default_factory=LatticeSettings)
