@@ -12,9 +12,10 @@ import numpy as np
 from regdb.condition import And, Compare, Node, Not, Or
 from regdb.regulation import Regulation
 from regdb.vocabulary import Value
-from regdb_runtime.maps.lines import inside
+from regdb_runtime.maps.lines import inside, project
 from regdb_runtime.maps.road_map import Floats, Lane, RoadMap, Zone
 from regdb_runtime.scenes.lane_facts import lane_facts, types_with_lanes
+from regdb_runtime.scenes.sign_facts import AT_JUNCTION, Codes, sign_facts
 
 RAIL = "rail"
 """Kind of a zone that lies between the outermost rails of a crossing; its facts hold on the way to it."""
@@ -67,10 +68,10 @@ def _collect(node: Node, found: dict[str, set[float]]) -> None:
 
 
 class LanePieces:
-    """The pieces of every lane of a map, each worked out when first asked for. `bounds`: see `bounds_by_fact`."""
+    """The pieces of every lane of a map, each worked out when first asked for. `bounds`: see `bounds_by_fact`; `codes`: see `sign_codes`."""
 
-    def __init__(self, road_map: RoadMap, bounds: Mapping[str, tuple[float, ...]], step: float = 1.0) -> None:
-        self.road_map, self._bounds, self._step = road_map, bounds, step
+    def __init__(self, road_map: RoadMap, bounds: Mapping[str, tuple[float, ...]], codes: Codes, step: float = 1.0) -> None:
+        self.road_map, self._bounds, self._codes, self._step = road_map, bounds, codes, step
         self._pieces: dict[tuple[str, tuple[int, ...]], tuple[Piece, ...]] = {}
         self._bands: dict[str, tuple[tuple[Band, ...], tuple[Band, ...]]] = {}
         self._facts: dict[str, Mapping[str, Value]] = {}
@@ -113,7 +114,7 @@ class LanePieces:
             found |= {name: own[name] for name in ("lane.width", "posted.speed", "sign.speed_limit") if name in own}
         if "road.two_way" not in found and told.get("road.divided") is False and road.facts.get("road.divided") is not True and road.junction is None:
             found |= {"road.one_way": True, "road.two_way": False, "road.lanes": found["road.lanes_same_direction"]}
-        facts = told | found | dict(road.facts) | dict(lane.facts)
+        facts = told | found | dict(road.facts) | self._junction_signs(road) | dict(lane.facts)
         types = lane.facts.get("road.types", road.facts.get("road.types", told.get("road.types")))
         if isinstance(types, frozenset):
             facts["road.types"] = types_with_lanes(types, found | dict(road.facts))
@@ -122,7 +123,8 @@ class LanePieces:
     def _cut(self, lane: Lane, running: frozenset[int]) -> Iterable[Piece]:
         zones = [zone for index, zone in enumerate(self.road_map.zones) if zone.kind != RAIL and (not zone.hours or index in running)]
         inner = [(zone, start, end) for zone in zones for start, end in areas_along(lane, zone.polygon, self._step)]
-        borders = {0.0, lane.length} | {at for _, start, end in inner for at in (start, end)}
+        signs = self._signs_on(lane)
+        borders = {0.0, lane.length} | {at for _, start, end in inner for at in (start, end)} | {at for at, _ in signs}
         for zone, start, end in inner:
             borders |= self._where_distance_counts(lane, zone, start, end)
         ordered = sorted(borders)
@@ -130,7 +132,27 @@ class LanePieces:
         for start, end in zip(ordered, ordered[1:], strict=False):
             if end - start > PRECISION:
                 here = [zone for zone, first, last in inner if first <= (start + end) / 2 <= last]
-                yield Piece(start, end, self._with_zones(lane, base, here, start, end), _governing(here))
+                facts = dict(base)
+                for at, said in signs:
+                    if at <= start + PRECISION:
+                        facts |= said
+                yield Piece(start, end, self._with_zones(lane, facts, here, start, end), _governing(here))
+
+    def _junction_signs(self, lane: Lane) -> dict[str, Value]:
+        """What signs of the lane say of the junction at its end."""
+        said = [sign_facts(self.road_map.signs[name], self._codes) for name in lane.signs if name in self.road_map.signs]
+        return {fact: value for facts in said for fact, value in facts.items() if fact in AT_JUNCTION}
+
+    def _signs_on(self, lane: Lane) -> list[tuple[float, dict[str, Value]]]:
+        """The other signs of the lane, each with the station from which it speaks (0 where its place is not known), in order."""
+        found = []
+        for name in lane.signs:
+            sign = self.road_map.signs.get(name)
+            said = {} if sign is None else {fact: value for fact, value in sign_facts(sign, self._codes).items() if fact not in AT_JUNCTION}
+            if sign is not None and said:
+                at = 0.0 if sign.position is None else float(project(np.array([sign.position]), lane.center)[0][0])
+                found.append((min(max(at, 0.0), lane.length), said))
+        return sorted(found, key=lambda item: item[0])
 
     def _where_distance_counts(self, lane: Lane, zone: Zone, start: float, end: float) -> set[float]:
         """Stations at which the distance to the zone's landmark passes a number that a condition compares it with."""

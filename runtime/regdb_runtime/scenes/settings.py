@@ -56,6 +56,8 @@ class SceneSettings:
     """Below this speed a vehicle stands (the paper's plateau)."""
     at_line: float = 3.0
     """A stop with the front no farther than this before the line is a stop at the line, not in the queue before it."""
+    at_rails: float = 15.24
+    """A stop with the front no farther than this before the nearest rail is a stop before it (50 ft, CVC 22451 and 22452)."""
     together: float = 1.0
     """Two vehicles that reach the junction within this time reach it at the same time."""
     beside_lane: float = 3.7

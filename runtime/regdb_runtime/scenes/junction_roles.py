@@ -1,0 +1,126 @@
+"""Roles of the traffic at a junction: who comes on other highways or towards the vehicle, who is in it, whether its exit is free."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+from regdb.vocabulary import Value
+from regdb_runtime.maps.lane_path import Junction
+from regdb_runtime.scenes.crossing import Arriving, Way
+from regdb_runtime.scenes.history import Arrivals
+from regdb_runtime.scenes.look import Look
+
+NOBODY_CROSSING: Mapping[str, Value] = {
+    "cross_traffic.hazard": False, "cross_traffic.in_intersection": False, "cross_traffic.arrived_together": False, "cross_traffic.on_right": False,
+    "oncoming.turning_across": False, "oncoming.hazard": False, "intersection.exit_blocked": False,
+}  # fmt: skip
+"""Away from junctions, for a manoeuvre that turns nowhere."""
+SLOW = 2.0
+"""Speed (m/s) below which a vehicle beyond the junction does not clear its exit in time."""
+TURNS = ("left", "right", "u_turn")
+
+
+@dataclass(frozen=True, eq=False)
+class Entering:
+    """A junction with those on their way into it: `ways` that meet the plan's, `arriving` on them, `green`: the signal lets the vehicle go."""
+
+    junction: Junction
+    ways: Sequence[Way]
+    limits: Mapping[str, float]
+    arriving: Sequence[Arriving]
+    arrivals: Arrivals
+    green: bool
+    distance: float
+    """From the front bumper to the junction's entrance, metres (negative: past it)."""
+
+
+def junction_roles(look: Look, entering: Entering, turns: bool) -> dict[str, Value]:
+    """Facts of the junction's traffic for a plan that goes through (`turns`: by a turn)."""
+    cross = [item for item in entering.arriving if item.way.comes_from != "oncoming"]
+    oncoming = [item for item in entering.arriving if item.way.comes_from == "oncoming"]
+    facts: dict[str, Value] = {
+        "cross_traffic.in_intersection": any(item.inside for item in cross),
+        "oncoming.turning_across": any(item.inside and item.way.turn in ("left", "u_turn") for item in oncoming),
+    }
+    facts |= _together(look, entering, cross)
+    for fact, those, comes_from in (("cross_traffic.hazard", cross, ("cross", "same")), ("oncoming.hazard", oncoming, ("oncoming",))):
+        hazard = _hazard(look, fact, entering, those, comes_from)
+        if hazard is not None:
+            facts[fact] = hazard
+    moving = _movement(look, entering, turns)
+    if moving is not None:
+        facts["movement.hazard"] = moving
+    return facts | _exit(look, entering)
+
+
+def _approaches(look: Look, item: Arriving) -> bool:
+    """Whether somebody moves towards the meeting place or is in the junction; who stands before it waits."""
+    return item.inside or not look.stands(item.track.speed)
+
+
+def _judged(look: Look, fact: str, item: Arriving) -> bool | None:
+    return look.judged(fact, {"other_speed": item.track.speed, "other_distance": max(0.0, item.to_meeting)})
+
+
+def _hazard(look: Look, fact: str, entering: Entering, those: Sequence[Arriving], comes_from: Sequence[str]) -> bool | None:
+    """Whether one of them is so near that it is a hazard; False only as far as they can be seen to come, None where that is not far enough."""
+    answers = [_judged(look, fact, item) for item in those if _approaches(look, item)]
+    if True in answers:
+        return True
+    seen = look.ranges.vehicles - max(0.0, entering.distance)
+    for way in entering.ways:
+        if way.comes_from in comes_from:
+            unseen = {"other_speed": entering.limits.get(way.lane, look.speed), "other_distance": max(0.0, seen)}
+            answers.append(look.judged(fact, unseen))
+    return False if all(answer is False for answer in answers) else None
+
+
+def _movement(look: Look, entering: Entering, turns: bool) -> bool | None:
+    """The planned turn, or start across the junction: nobody on a way that meets it, no bicycle beside a turn. Who has red before his line is held."""
+    held = [item for item in entering.arriving if entering.green and not item.inside and item.way.comes_from != "oncoming"]
+    those = [item for item in entering.arriving if item not in held and _approaches(look, item)]
+    if not turns:
+        those = [item for item in those if item.way.comes_from != "oncoming" or item.inside]
+    answers = [_judged(look, "movement.hazard", item) for item in those]
+    if turns:
+        answers += _bicycles_beside(look, entering)
+    return True if True in answers else None if None in answers else False
+
+
+def _bicycles_beside(look: Look, entering: Entering) -> list[bool | None]:
+    """Bicycles on the side of the turn that would be cut off: alongside, or coming up from behind."""
+    right = entering.junction.turn == "right"
+    found: list[bool | None] = []
+    for item in look.around.others:
+        beside = item.left < look.path_strip[0] + 1.0 if right else item.right > look.path_strip[1] - 1.0
+        near = -look.settings.beside_lane - 1.0 < item.offset < look.settings.beside_lane + 1.0
+        if item.track.kind != "bicycle" or not beside or not near or item.along <= 0.0 or item.rear > entering.junction.entrance:
+            continue
+        if item.front > look.around.rear and item.rear < look.around.front and look.around.front >= entering.junction.entrance - look.settings.approach:
+            found.append(True)
+        elif item.front <= look.around.rear:
+            measured = {"other_speed": item.along, "other_distance": max(0.0, entering.junction.entrance - item.front)}
+            found.append(look.judged("movement.hazard", measured))
+    return found
+
+
+def _together(look: Look, entering: Entering, cross: Sequence[Arriving]) -> dict[str, Value]:
+    """Others that reached the junction at the same time as the vehicle and have not gone on; whether one of them is on the right."""
+    own = entering.arrivals.own
+    here = {item.track.id: item.way for item in cross if not item.inside}
+    waiting = [
+        here[name] for name, time in entering.arrivals.others if name in here
+        and (own is None or abs(time - own) <= look.settings.together) and (own is not None or time >= entering.arrivals.now - look.settings.together)
+    ]  # fmt: skip
+    return {"cross_traffic.arrived_together": bool(waiting), "cross_traffic.on_right": any(way.bearing > 0.0 for way in waiting)}
+
+
+def _exit(look: Look, entering: Entering) -> dict[str, Value]:
+    """Whether room for the vehicle is left beyond the junction: nobody slow stands where it would come to stand."""
+    beyond = entering.junction.exit
+    room = beyond + look.footprint.length + look.settings.exit_margin
+    for item in look.around.among(*look.path_strip):
+        if item.track.kind != "pedestrian" and beyond - item.track.length < item.rear < room and item.front > look.around.front and abs(item.along) < SLOW:
+            return {"intersection.exit_blocked": True}
+    return {"intersection.exit_blocked": False} if room - look.around.front <= look.ranges.vehicles else {}

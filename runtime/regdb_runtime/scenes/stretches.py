@@ -1,0 +1,170 @@
+"""From a manoeuvre and an observation to the stretches of its path: who governs, what the law knows there, and the roles of everybody around."""
+
+from __future__ import annotations
+
+import datetime
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+from regdb.interpretation import Interpretation
+from regdb.situation import Scene
+from regdb.vocabulary import Value
+from regdb_runtime.database import RegulationDatabase
+from regdb_runtime.errors import RequestError
+from regdb_runtime.index.slots import PreparedScene
+from regdb_runtime.legality import View
+from regdb_runtime.maneuver import Maneuver
+from regdb_runtime.maps.lane_path import Junction, LanePath
+from regdb_runtime.maps.road_map import Lane, RoadMap
+from regdb_runtime.observation import Footprint, Observation
+from regdb_runtime.scenes.clock_facts import clock_facts
+from regdb_runtime.scenes.course import Courses, Part, stages_of
+from regdb_runtime.scenes.crossing import Crossings
+from regdb_runtime.scenes.eye_facts import EyeReport
+from regdb_runtime.scenes.history import History, RailAhead, first_rail
+from regdb_runtime.scenes.instant import Instant
+from regdb_runtime.scenes.junction_facts import junction_facts
+from regdb_runtime.scenes.pieces import LanePieces, bounds_by_fact
+from regdb_runtime.scenes.roles import Candidate, roles_on
+from regdb_runtime.scenes.settings import EgoFacts, SceneSettings, SensorRanges, passenger_car
+from regdb_runtime.scenes.sign_facts import sign_codes
+from regdb_runtime.scenes.stretch import Stage, Stretch
+from regdb_runtime.scenes.tellers import tellers
+
+REMEMBERED = 4096
+"""Scenes kept; a drive meets a few hundred different ones."""
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class _Encoded:
+    scene: Scene
+    prepared: PreparedScene
+
+
+class Scenes:
+    """Built once for a map, a database and a vehicle. Raises RequestError when nobody is known to govern or an interpretation is not there."""
+
+    def __init__(
+        self, road_map: RoadMap, database: RegulationDatabase, footprint: Footprint, settings: SceneSettings | None = None,
+        interpretation: Interpretation | str = "rss", ego: EgoFacts | None = None, ranges: SensorRanges | None = None,
+    ) -> None:  # fmt: skip
+        self.road_map, self.database, self.footprint = road_map, database, footprint
+        self.settings, self.ranges = settings or SceneSettings(), ranges or SensorRanges()
+        self.profile = _profile(database, interpretation)
+        self.ego = ego or passenger_car(database.vocabulary, footprint)
+        self._place = road_map.jurisdiction or self.settings.place
+        if self._place is None:
+            raise RequestError("neither the map nor the settings say which jurisdiction governs; set SceneSettings.place")
+        pieces = LanePieces(road_map, bounds_by_fact(database.regulations), sign_codes(database.vocabulary), self.settings.border_step)
+        self.courses = Courses(pieces, self.settings)
+        self._asked = tellers(database.vocabulary)
+        self._sun = road_map.origin or self.settings.sun_at
+        self._crossings: dict[tuple[str, ...], Crossings] = {}
+        self._views: dict[tuple[str, int], View] = {}
+        self._encoded: dict[tuple[object, ...], _Encoded] = {}
+        self._eye: EyeReport | None = None
+        self._instant: Instant | None = None
+
+    def history(self) -> History:
+        """A new, empty history of a vehicle on this map."""
+        return History(self.road_map, self.footprint, self.settings, self.crossings, self.rail)
+
+    def crossings(self, lane_path: LanePath, junction: Junction) -> Crossings | None:
+        """The ways that meet the path's way through a junction, None where the path has no lane within it."""
+        inner = tuple(span.lane for span in lane_path.spans if self.road_map.lanes[span.lane].junction == junction.id)
+        if not inner:
+            return None
+        if inner not in self._crossings:
+            self._crossings[inner] = Crossings(self.road_map, inner)
+        return self._crossings[inner]
+
+    def rail(self, lane_path: LanePath, rear: float) -> RailAhead | None:
+        """The rail crossing on a path that the rear bumper has not left behind."""
+        return first_rail(self.courses.rails(lane_path), rear)
+
+    def stretches(self, observation: Observation, maneuver: Maneuver, history: History) -> tuple[Stretch, ...]:
+        """The stretches of the manoeuvre's path from the front bumper on, in order, without gaps; at least one."""
+        instant = self._at(observation)
+        around = instant.around(maneuver.lane_path.path)
+        crossed = maneuver.junction is not None and history.past.line == maneuver.junction.id and history.past.crossed
+        stages, line = stages_of(maneuver.junction, around.front, crossed, self.footprint.length, self.settings)
+        parts = self.courses.parts(maneuver.lane_path, around.front, self.settings.reach, stages, observation.clock, observation.ego.speed)
+        candidate = Candidate(self, instant, maneuver, around, history, parts[0].lane)
+        return tuple(self._stretch(part, instant, candidate, line) for part in parts)
+
+    def _at(self, observation: Observation) -> Instant:
+        """What candidates of one observation share."""
+        if self._instant is None or self._instant.observation is not observation:
+            if self._eye is None or not self._eye.is_of(observation):
+                self._eye = EyeReport(observation, self._asked)
+                self._encoded.clear()
+            clock = clock_facts(observation.clock, self._sun, self.settings.summer_time)
+            self._instant = Instant(observation, self.road_map, self.footprint, self.settings, self.ranges, self._eye, clock)
+        return self._instant
+
+    def _stretch(self, part: Part, instant: Instant, candidate: Candidate, line: float | None) -> Stretch:
+        place = part.piece.jurisdiction or self._place
+        assert place is not None
+        encoded = self._encode(part, candidate.maneuver.junction if part.stage != "road" else None, candidate)
+        roles, measures, crosswalk = roles_on(candidate, part, encoded.scene.facts)
+        bus = candidate.around.front + 1.0 if instant.observation.facts.get("school_bus.ahead") is True else None
+        return Stretch(
+            part.start, part.end, place, part.clock, self.view(place, part.clock), encoded.scene, encoded.prepared, roles, part.lane, part.stage,
+            line if part.stage == "approach" else None, crosswalk, None if part.rail is None else part.rail_station, bus, measures,
+        )  # fmt: skip
+
+    def view(self, place: str, clock: datetime.datetime) -> View:
+        """The law of a place on the day of a clock. Raises RequestError for a place that is not in the database."""
+        key = place, clock.toordinal()
+        found = self._views.get(key)
+        if found is None:
+            found = self._views[key] = self.database.at(place, key[1])
+        return found
+
+    def _encode(self, part: Part, junction: Junction | None, candidate: Candidate) -> _Encoded:
+        """The facts that hold for every plan on a part, encoded; they change with the place and with what the eye reports."""
+        inner = None if junction is None else candidate.inner
+        key = id(part.piece), part.stage, None if junction is None else (junction.id, junction.turn, junction.control, inner), id(part.rail)
+        found = self._encoded.get(key)
+        if found is None:
+            if len(self._encoded) >= REMEMBERED:
+                self._encoded.clear()
+            facts = self._standing(part, junction, candidate)
+            assert self._eye is not None
+            scene = Scene(self._eye.added_to(facts, self._has_lights(junction, part.stage)), self._eye.silent)
+            found = self._encoded[key] = _Encoded(scene, self.database.prepare(scene))
+        return found
+
+    def _standing(self, part: Part, junction: Junction | None, candidate: Candidate) -> dict[str, Value]:
+        """What stands still: the vehicle's own make, the lane's piece, the junction's stage, the rails."""
+        facts = {**self.ego.facts, **part.piece.facts}
+        inner = candidate.inner
+        if junction is not None and inner is not None:
+            approach = candidate.approach
+            ways = () if candidate.crossings is None else tuple(candidate.crossings.ways)
+            facts |= junction_facts(self.road_map, junction, self.road_map.lanes[inner], approach, ways, part.stage)
+        else:
+            facts |= junction_facts(self.road_map, _NOWHERE, self._lane(part), None, (), "road")
+        if part.rail is not None and part.rail.facts is not None:
+            facts |= {**part.rail.facts, "rail.crossing_ahead": True, "rail.distance": 0.0}
+        return facts
+
+    def _lane(self, part: Part) -> Lane:
+        return self.road_map.lanes[part.lane]
+
+    @staticmethod
+    def _has_lights(junction: Junction | None, stage: Stage) -> bool:
+        """Whether the map's lights decide what the signal shows, so that the eye's own word is only asked for where none of them is seen."""
+        return stage != "approach" or (junction is not None and bool(junction.lights))
+
+
+_NOWHERE = Junction("", 0.0, 0.0, 0.0, "straight", "none")
+
+
+def _profile(database: RegulationDatabase, interpretation: Interpretation | str) -> Interpretation:
+    if isinstance(interpretation, Interpretation):
+        return interpretation
+    found: Mapping[str, Interpretation] = database.interpretations
+    if interpretation not in found:
+        raise RequestError(f"the database has no interpretation {interpretation!r}; it has: {', '.join(sorted(found)) or 'none'}")
+    return found[interpretation]
