@@ -11,9 +11,8 @@ from regdb_runtime.verdict import Verdict
 
 LAWFUL, UNCERTAIN, UNLAWFUL, NO_PLAN = 0, 1, 2, 3
 RANKS: Final = {LEGAL: LAWFUL, UNKNOWN: UNCERTAIN, ILLEGAL: UNLAWFUL}
-Violation = tuple[float, int, float]
-"""Less is better: minus the place of the gravest topic broken, how many rules are broken, and by how much (as a share of the limit)."""
-NONE_BROKEN: Final[Violation] = (-float("inf"), 0, 0.0)
+Violation = tuple[float, ...]
+"""How far each duty is broken, weightiest first (`planning.duties`); less is better, empty for what is not unlawful."""
 
 
 @dataclass(frozen=True)
@@ -30,5 +29,5 @@ class Assessed:
     verdict: Verdict | None
     rejections: tuple[Rejection, ...] = ()
     verdicts: tuple[Verdict, ...] = ()
-    violation: Violation = NONE_BROKEN
+    violation: Violation = ()
     judged: int = 0

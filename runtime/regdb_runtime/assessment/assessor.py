@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 from regdb.interpretation import Interpretation
 from regdb.regulation import Regulation
 from regdb_runtime.assessment.alike import Distinctions, distinctions
-from regdb_runtime.assessment.assessed import LAWFUL, NO_PLAN, NONE_BROKEN, RANKS, UNCERTAIN, UNLAWFUL, Assessed
+from regdb_runtime.assessment.assessed import LAWFUL, NO_PLAN, RANKS, UNCERTAIN, UNLAWFUL, Assessed, Violation
 from regdb_runtime.assessment.caps import Caps
 from regdb_runtime.assessment.cross_section import Roads
 from regdb_runtime.assessment.judge import Judged, Judging
@@ -18,7 +18,7 @@ from regdb_runtime.assessment.plan_facts import Measuring, measure, measuring
 from regdb_runtime.assessment.rejections import Fallen
 from regdb_runtime.assessment.route_facts import shared_facts
 from regdb_runtime.assessment.settings import AssessmentSettings
-from regdb_runtime.assessment.violation import Gravity
+from regdb_runtime.assessment.violation import violations
 from regdb_runtime.database import RegulationDatabase
 from regdb_runtime.maneuver import Maneuver
 from regdb_runtime.maps.road_map import RoadMap
@@ -43,7 +43,6 @@ class Assessor:
         self.settings = settings or AssessmentSettings()
         self.interpretation = interpretation
         self._roads = Roads(road_map) if road_map is not None else None
-        self._gravity = Gravity(self.settings)
         self._caps = Caps(self.settings, interpretation)
         self._distinctions: dict[int, tuple[tuple[Regulation, ...], Distinctions]] = {}
 
@@ -67,7 +66,7 @@ class Assessor:
             return Assessed(None, NO_PLAN, None)
         what = self._measuring(maneuver, stretches, candidates, predictions)
         judging = Judging(maneuver, stretches, [self._distinguish(stretch, maneuver) for stretch in stretches])
-        search = _Search(what, judging, self._gravity, candidates, costs, sweeper or Sweeper(predictions, self.footprint), self.settings)
+        search = _Search(what, judging, candidates, costs, sweeper or Sweeper(predictions, self.footprint), self.settings)
         return search.best(rows)
 
     def _measuring(self, maneuver: Maneuver, stretches: Sequence[Stretch], candidates: Candidates, predictions: Predictions) -> Measuring:
@@ -92,10 +91,9 @@ class _Search:
     """One search through the plans of a manoeuvre in the order of cost."""
 
     def __init__(
-        self, what: Measuring, judging: Judging, gravity: Gravity, candidates: Candidates, costs: NDArray[np.float64], sweeper: Sweeper,
-        settings: AssessmentSettings,
+        self, what: Measuring, judging: Judging, candidates: Candidates, costs: NDArray[np.float64], sweeper: Sweeper, settings: AssessmentSettings
     ) -> None:  # fmt: skip
-        self.what, self.judging, self.gravity = what, judging, gravity
+        self.what, self.judging = what, judging
         self.candidates, self.costs, self.sweeper, self.settings = candidates, costs, sweeper, settings
         self.fallen = Fallen()
         self.batches: list[tuple[Rows, Judged]] = []
@@ -137,8 +135,8 @@ class _Search:
         listed = []
         for number, (batch, judged) in enumerate(self.batches):
             if (judged.rank == UNLAWFUL).any():
-                violations, unlawful = self.gravity.violations(judged), np.flatnonzero(judged.rank == UNLAWFUL).tolist()
-                listed += [(violations[row], float(self.costs[batch[row]]), number, row) for row in unlawful]
+                broken, unlawful = violations(judged, self.settings), np.flatnonzero(judged.rank == UNLAWFUL).tolist()
+                listed += [(broken[row], float(self.costs[batch[row]]), number, row) for row in unlawful]
         for violation, _, number, row in sorted(listed):
             batch, judged = self.batches[number]
             if self._free(int(batch[row])):
@@ -149,7 +147,7 @@ class _Search:
         _, judged = self.batches[0]
         return Assessed(None, NO_PLAN, judged.verdict(0), self.fallen.report(), judged=self.judged)
 
-    def _found(self, batch: Rows, judged: Judged, row: int, rank: int, violation: tuple[float, int, float] = NONE_BROKEN) -> Assessed:
+    def _found(self, batch: Rows, judged: Judged, row: int, rank: int, violation: Violation = ()) -> Assessed:
         verdicts = self.judging.final(judged, row)
         worst = max(verdicts, key=lambda verdict: RANKS[verdict.verdict])
         return Assessed(int(batch[row]), rank, worst, self.fallen.report(), verdicts, violation, self.judged)

@@ -130,7 +130,7 @@ def _by_stretch(what: Measuring, plans: Extents, speed: Floats) -> tuple[Bools, 
     found: list[dict[str, Column]] = []
     sight = judged_facts.decided_by(what.profile, "speed.unsafe_for_conditions")
     for index, stretch in enumerate(what.stretches):
-        reached[index] = (last >= stretch.start) if index else True
+        reached[index] = (last >= stretch.start) if index and not (what.maneuver.commits and stretch.line is not None) else True
         fastest = _fastest(front, speed, stretch.start if index else -np.inf, stretch.end if index + 1 < len(what.stretches) else np.inf)
         here = {"plan.speed": number(np.where(reached[index], fastest, np.nan), settings.decimals)}
         for fact, line in (

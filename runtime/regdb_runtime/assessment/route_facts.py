@@ -16,10 +16,9 @@ NO_LANE_FOR_CARS: frozenset[str] = frozenset(("bicycle_lane", "parking", "bus_la
 
 def shared_facts(maneuver: Maneuver, roads: Roads | None) -> dict[str, Value]:
     """Facts of the plan that do not depend on its motion."""
-    facts: dict[str, Value] = {"plan.stop_reason": _stop_reason(maneuver)}
+    facts: dict[str, Value] = {"plan.stop_reason": _stop_reason(maneuver), "plan.turn_purpose": "none", "plan.prepares_turn": "none"}
     junction = maneuver.junction
     if junction is None or junction.turn == "straight":
-        facts |= {"plan.turn_purpose": "none", "plan.prepares_turn": "none"}
         return facts
     facts["plan.prepares_turn"] = PREPARES[junction.turn]
     if turns(maneuver):

@@ -2,16 +2,9 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 
-GRAVEST_FIRST: tuple[str, ...] = (
-    "red-signal", "signal-stop", "flashing-signal", "rail-crossing-stop", "rail-crossing-stop-classes", "school-bus", "stop-sign",
-    "pedestrian-crosswalk", "blind-pedestrian", "pedestrian-due-care", "sidewalk", "passing-bicycle", "emergency-vehicle-yield",
-    "stop-sign-right-of-way", "intersection-right-of-way", "left-turn-yield", "yield-sign", "one-way", "drive-right", "divided-highway",
-    "pass-clear-view", "pass-left", "pass-on-right", "lane-use", "turn-safely", "double-lines", "follow-too-closely", "move-over",
-    "basic-speed", "maximum-speed", "prima-facie-limits", "school-bands", "local-speed-zones",
-)  # fmt: skip
-"""Topics of the law (as sections name them), what endangers others most before the rest; a topic that is not here comes after all of them."""
+from regdb_runtime.planning.duties import DUTIES, Duty
 
 
 @dataclass(frozen=True, slots=True)
@@ -36,8 +29,11 @@ class AssessmentSettings:
     """m/s by which a gap that is already too small must grow until the plan ends, unless the vehicle all but stands."""
     claims_no_room: bool = False
     """Whether plans claim that no path leaves the clearance the law asks. The claim opens an exception (CVC 21760(d)); waiting behind needs none."""
-    least_violation: tuple[str, ...] = field(default=GRAVEST_FIRST)
-    """Topics from the gravest; where nothing is lawful the plan that breaks the less grave ones is taken, then the one less beyond its limit."""
+    duties: tuple[Duty, ...] = DUTIES
+    """Duties from the weightiest; where nothing is lawful the plan is taken that breaks the weightier ones least."""
+    breach_step: float = 0.1
+    """How far beyond a limit counts in steps of this share of it: whether 3 or 8 percent on average is for comfort and safety to weigh, not a
+    reason to brake with all there is."""
     first_batch: int = 1
     batch_growth: int = 8
     """Plans are judged in the order of cost, first this many at once, then so many times more: mostly the cheapest is lawful."""

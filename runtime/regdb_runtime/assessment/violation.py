@@ -1,8 +1,6 @@
-"""How bad it is to break the law where nothing is lawful: graver topics first, then how many rules, then how far and long beyond a limit."""
+"""How far plans break the duties of the law, weightiest duty first, for the moment when nothing is lawful; many plans at once."""
 
 from __future__ import annotations
-
-from collections.abc import Mapping
 
 import numpy as np
 
@@ -16,39 +14,36 @@ from regdb_runtime.assessment.settings import AssessmentSettings
 from regdb_runtime.trajectory import Floats
 
 
-class Gravity:
-    """The declared priority: the gravest topic has place 0, those not named come last."""
+def violations(judged: Judged, settings: AssessmentSettings) -> list[Violation]:
+    """For each of k plans how far it breaks each duty, and last what no duty covers; compare as tuples, the least is chosen.
 
-    def __init__(self, settings: AssessmentSettings) -> None:
-        self._places: Mapping[str, int] = {topic: place for place, topic in enumerate(settings.least_violation)}
-
-    def place(self, rule: Regulation) -> int:
-        """Place of a rule's topic; smaller is graver."""
-        return self._places.get(rule.topic, len(self._places))
-
-    def violations(self, judged: Judged) -> list[Violation]:
-        """What each plan breaks over all stretches it crosses, k of them."""
-        size = judged.facts.size
-        places, shares = np.full(size, np.inf), np.zeros(size)
-        broken: list[set[str]] = [set() for _ in range(size)]
-        for group in judged.groups:
-            if RANKS[group.verdict.verdict] == UNLAWFUL:
-                rows, rules = group.rows, group.verdict.deciding
-                places[rows] = np.minimum(places[rows], min(map(self.place, rules)))
-                shares[rows] = np.maximum(shares[rows], _excess(group, judged.facts))
-                for row in rows.tolist():
-                    broken[row].update(rule.id for rule in rules)
-        return [(-place, len(rules), share) for place, rules, share in zip(places.tolist(), broken, shares.tolist(), strict=True)]
+    As `planning.duties.violations`, over all stretches a plan crosses: a topic counts once, by the stretch where it is broken most. A speed
+    counts by how far it is beyond its limit on average over the plan, so that of plans all too fast the one that slows down is the lesser evil;
+    amounts count in steps of `breach_step`.
+    """
+    duties, step = settings.duties, settings.breach_step
+    worst: dict[tuple[int, str], Floats] = {}
+    for group in judged.groups:
+        if RANKS[group.verdict.verdict] == UNLAWFUL:
+            for rule in group.verdict.deciding:
+                place = next((index for index, duty in enumerate(duties) if duty.covers(rule)), len(duties))
+                found = worst.setdefault((place, rule.topic or rule.id), np.zeros(judged.facts.size))
+                found[group.rows] = np.maximum(found[group.rows], np.ceil(_amount(rule, group, judged.facts) / step) * step)
+    total = np.zeros((judged.facts.size, len(duties) + 1))
+    for (place, _), found in worst.items():
+        total[:, place] += found
+    return [tuple(row) for row in total.tolist()]
 
 
-def _excess(group: Group, facts: PlanFacts) -> Floats:
-    """How far beyond the broken limits each plan of a group is, as a share of the bound; the greatest of several, (m,)."""
+def _amount(rule: Regulation, group: Group, facts: PlanFacts) -> Floats:
+    """How far each plan of a group breaks one rule, (m,): the share of the bound by which it is beyond a limit, at most 1; 1 without limit."""
     verdict = group.verdict
     situation = Situation(verdict.circumstances.vocabulary, verdict.scene, verdict.plan)
     found, names = np.zeros(len(group.rows)), facts.names(group.stretch)
-    for limit in (limit for rule in verdict.deciding for limit in rule.limits):
+    for limit in rule.limits:
         bound = linear_value(limit.bound, situation)
-        if bound is not None and limit.fact in names:
-            beyond = facts.beyond(group.stretch, limit.fact, group.rows, bound, limit.direction)
-            found = np.maximum(found, np.nan_to_num(beyond) / max(abs(bound), 1e-3))
-    return found
+        if bound is None or limit.fact not in names:
+            return np.ones(len(group.rows))
+        beyond = facts.beyond(group.stretch, limit.fact, group.rows, bound, limit.direction)
+        found = np.maximum(found, np.clip(np.nan_to_num(beyond) / max(abs(bound), 1e-9), 0.0, 1.0))
+    return found if rule.limits else np.ones(len(group.rows))
