@@ -90,10 +90,13 @@ def _obstacle(node: XmlNode, static: bool, notes: list[str]) -> RecordedObstacle
 
 def _shape(node: XmlNode) -> _Shape:
     """The rectangle; of a circle and a polygon the rectangle around them."""
+    if len(list(node)) > 1:
+        raise node.fail("holds several shapes; one is read")
     if (rectangle := node.find("rectangle")) is not None:
-        center, turned = rectangle.find("center"), rectangle.find("orientation")
+        center, turned, shift = (rectangle.find(tag) for tag in ("center", "orientation", "originXShift"))
         ahead, aside = (0.0, 0.0) if center is None else read_point(center)
         length, width = _lengths(rectangle, "length", "width")
+        ahead -= 0.0 if shift is None else shift.number()
         return _Shape(length, width, ahead, aside, 0.0 if turned is None else turned.number())
     if (circle := node.find("circle")) is not None:
         center = circle.find("center")
