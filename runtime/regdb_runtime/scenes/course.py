@@ -5,6 +5,7 @@ from __future__ import annotations
 import datetime
 from collections.abc import Sequence
 from dataclasses import dataclass
+from itertools import pairwise
 
 from regdb_runtime.maps.lane_path import Junction, LanePath, LaneSpan
 from regdb_runtime.maps.road_map import Lane
@@ -77,7 +78,7 @@ class Courses:
         later = clock if change is None else clock + datetime.timedelta(seconds=change + 1e-3)
         found: list[Part] = []
         for span in lane_path.spans:
-            if span.end > front and span.start < last or span is lane_path.spans[-1]:
+            if (span.end > front and span.start < last) or span is lane_path.spans[-1]:
                 self._on_span(span, front, last, sorted(borders), turning, clock, later, stages, rails, speed, span is lane_path.spans[-1], found)
         return found
 
@@ -94,16 +95,15 @@ class Courses:
             pieces = self.pieces.at(span.lane, when)
             edges = [span.start + (piece.end - span.lane_start) * scale for piece in pieces[:-1]]
             cuts = sorted({low, high, *(at for at in (*borders, *edges) if low < at < high)})
-            for start, stop in zip(cuts, cuts[1:], strict=False):
+            for start, stop in pairwise(cuts):
                 if stop - start < SHORTEST and found:
                     continue
                 middle = (start + stop) / 2
                 place = sum(1 for edge in edges if edge <= middle)
                 rail = next(((at, band) for at, over, band in rails if at - self.settings.approach <= middle < over), None)
                 arrival = clock if speed < 1.0 else max(when, clock + datetime.timedelta(seconds=max(0.0, start - front) / speed))
-                found.append(Part(
-                    start, stop, span.lane, pieces[place], _stage(stages, middle), None if rail is None else rail[1], None if rail is None else rail[0], arrival,
-                ))  # fmt: skip
+                at_rail, band = (None, None) if rail is None else rail
+                found.append(Part(start, stop, span.lane, pieces[place], _stage(stages, middle), band, at_rail, arrival))
 
 
 def _stage(stages: Sequence[tuple[float, Stage]], station: float) -> Stage:
@@ -114,7 +114,9 @@ def _stage(stages: Sequence[tuple[float, Stage]], station: float) -> Stage:
     return found
 
 
-def stages_of(junction: Junction | None, front: float, crossed: bool, length: float, settings: SceneSettings) -> tuple[list[tuple[float, Stage]], float | None]:
+def stages_of(
+    junction: Junction | None, front: float, crossed: bool, length: float, settings: SceneSettings
+) -> tuple[list[tuple[float, Stage]], float | None]:
     """Stations from which each stage holds, and the station of the line before which the vehicle still is (None: past it, or none ahead).
 
     The line is the junction's; a vehicle that stands a little past it without having stopped there has it just before its front.

@@ -107,7 +107,8 @@ class Crossings:
         dx, dy = place[:, None, 0] - seg[:, 0], place[:, None, 1] - seg[:, 1]
         along, across = dx * seg[:, 2] + dy * seg[:, 3], dy * seg[:, 2] - dx * seg[:, 3]
         facing = np.cos(place[:, None, 2]) * seg[:, 2] + np.sin(place[:, None, 2]) * seg[:, 3]
-        on = (np.abs(across) <= self.settings.beside_way) & (along >= -0.01) & (along <= seg[:, 4] + 0.01) & (facing >= math.cos(self.settings.along_way))
+        on = (np.abs(across) <= self.settings.beside_way) & (facing >= math.cos(self.settings.along_way))
+        on &= (along >= -0.01) & (along <= seg[:, 4] + 0.01)
         found: dict[tuple[int, int], tuple[float, float]] = {}
         for row, column in np.argwhere(on):
             key = int(row), int(seg[column, 6])
@@ -176,4 +177,5 @@ def _segments(before: Floats, own: Floats, way: int) -> Floats:
     edge = float(np.hypot(*np.diff(before, axis=0).T).sum()) if len(before) else 0.0
     if len(before):
         edge += float(np.hypot(*(own[0, :2] - before[-1])))
-    return np.column_stack((line[:-1][keep], steps[keep] / lengths[keep, None], lengths[keep], starts[keep] - edge, np.full(int(keep.sum()), float(way))))
+    number = np.full(int(keep.sum()), float(way))
+    return np.column_stack((line[:-1][keep], steps[keep] / lengths[keep, None], lengths[keep], starts[keep] - edge, number))

@@ -1,4 +1,4 @@
-"""The closed set of facts about the last seconds and metres, from the sequence of observations and the map alone: the same in a planner and in an audit."""
+"""The closed set of facts about the last seconds and metres, from observations and map alone: the same in a planner and in an audit."""
 
 from __future__ import annotations
 

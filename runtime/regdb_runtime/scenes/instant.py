@@ -12,6 +12,7 @@ from regdb_runtime.scenes.around import Around, around
 from regdb_runtime.scenes.crossing import Arriving, Crossings
 from regdb_runtime.scenes.eye_facts import EyeReport
 from regdb_runtime.scenes.settings import SceneSettings, SensorRanges
+from regdb_runtime.scenes.stretch import Stretch
 from regdb_runtime.scenes.walkers import Walkers
 
 
@@ -26,20 +27,19 @@ class Instant:
         self._footprint, self._reach = footprint, max(ranges.vehicles, ranges.bicycles, ranges.pedestrians) + settings.approach
         crosswalks = {walk.id: walk for walk in road_map.crosswalks}
         self.walkers = Walkers(observation.ego, observation.tracks, crosswalks, ranges.pedestrians, settings.about_to_cross)
-        self._around: dict[int, Around] = {}
-        self._arriving: dict[int, tuple[Arriving, ...]] = {}
+        self._around: dict[ReferencePath, Around] = {}
+        self._arriving: dict[Crossings, tuple[Arriving, ...]] = {}
         self.shared: dict[tuple[object, ...], Mapping[str, Value]] = {}
+        self.stretches: dict[tuple[object, ...], tuple[Stretch, ...]] = {}
 
     def around(self, path: ReferencePath) -> Around:
         """The vehicle and everybody else on a path."""
-        key = id(path)
-        if key not in self._around:
-            self._around[key] = around(path, self.observation.ego, self._footprint, self.observation.tracks, self._reach)
-        return self._around[key]
+        if path not in self._around:
+            self._around[path] = around(path, self.observation.ego, self._footprint, self.observation.tracks, self._reach)
+        return self._around[path]
 
     def arriving(self, crossings: Crossings) -> tuple[Arriving, ...]:
         """Who is on the ways that meet one planned way."""
-        key = id(crossings)
-        if key not in self._arriving:
-            self._arriving[key] = crossings.arriving(self.observation.tracks)
-        return self._arriving[key]
+        if crossings not in self._arriving:
+            self._arriving[crossings] = crossings.arriving(self.observation.tracks)
+        return self._arriving[crossings]

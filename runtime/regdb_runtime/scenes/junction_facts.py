@@ -21,7 +21,9 @@ NO_JUNCTION: Mapping[str, Value] = {
 }  # fmt: skip
 
 
-def junction_facts(road_map: RoadMap, junction: Junction, inner: Lane, approach: Lane | None, ways: tuple[Way, ...], stage: Stage) -> dict[str, Value]:
+def junction_facts(
+    road_map: RoadMap, junction: Junction, inner: Lane, approach: Lane | None, ways: tuple[Way, ...], stage: Stage
+) -> dict[str, Value]:
     """Facts of a junction on a stage of the way through it. `inner`: the planned lane within; `ways`: those that meet it.
 
     Past the line its lights and signs no longer face the vehicle.
@@ -32,7 +34,8 @@ def junction_facts(road_map: RoadMap, junction: Junction, inner: Lane, approach:
     own = {name: value for name, value in inner.facts.items() if name.startswith("intersection.")}
     facts: dict[str, Value] = {"intersection.present": True, **shape, **_control(road_map, junction, ways), **own}
     if stage == "inside":
-        return facts | {"ego.in_intersection": True, "intersection.distance": 0.0, "signal.present": False, "signal.place": "none", **NO_SIGNS, **NO_SIGNAL}
+        past = {**NO_SIGNS, **NO_SIGNAL, "signal.present": False, "signal.place": "none"}
+        return facts | past | {"ego.in_intersection": True, "intersection.distance": 0.0}
     facts |= {"ego.in_intersection": False, "stop_line.present": junction.stop_line_marked}
     if junction.control != "unknown":
         facts |= {
@@ -77,7 +80,7 @@ def _shape(road_map: RoadMap, inner: Lane, approach: Lane | None, ways: tuple[Wa
     return facts
 
 
-def destination_facts(road_map: RoadMap, inner: Lane, facts_of_exit: Mapping[str, Value], turn: Turn) -> dict[str, Value]:
+def destination_facts(facts_of_exit: Mapping[str, Value], turn: Turn) -> dict[str, Value]:
     """Whether the road that a turn leads into is one-way."""
     one_way = facts_of_exit.get("road.one_way")
     return {"plan.destination_one_way": one_way} if turn != "straight" and isinstance(one_way, bool) else {}

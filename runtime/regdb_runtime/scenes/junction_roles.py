@@ -77,7 +77,7 @@ def _hazard(look: Look, fact: str, entering: Entering, those: Sequence[Arriving]
 
 
 def _movement(look: Look, entering: Entering, turns: bool) -> bool | None:
-    """The planned turn, or start across the junction: nobody on a way that meets it, no bicycle beside a turn. Who has red before his line is held."""
+    """The planned turn, or start across: nobody on a way that meets it, no bicycle beside a turn. Whoever has red before his line is held."""
     held = [item for item in entering.arriving if entering.green and not item.inside and item.way.comes_from != "oncoming"]
     those = [item for item in entering.arriving if item not in held and _approaches(look, item)]
     if not turns:
@@ -97,7 +97,8 @@ def _bicycles_beside(look: Look, entering: Entering) -> list[bool | None]:
         near = -look.settings.beside_lane - 1.0 < item.offset < look.settings.beside_lane + 1.0
         if item.track.kind != "bicycle" or not beside or not near or item.along <= 0.0 or item.rear > entering.junction.entrance:
             continue
-        if item.front > look.around.rear and item.rear < look.around.front and look.around.front >= entering.junction.entrance - look.settings.approach:
+        alongside = item.front > look.around.rear and item.rear < look.around.front
+        if alongside and entering.distance <= look.settings.approach:
             found.append(True)
         elif item.front <= look.around.rear:
             measured = {"other_speed": item.along, "other_distance": max(0.0, entering.junction.entrance - item.front)}
@@ -121,6 +122,7 @@ def _exit(look: Look, entering: Entering) -> dict[str, Value]:
     beyond = entering.junction.exit
     room = beyond + look.footprint.length + look.settings.exit_margin
     for item in look.around.among(*look.path_strip):
-        if item.track.kind != "pedestrian" and beyond - item.track.length < item.rear < room and item.front > look.around.front and abs(item.along) < SLOW:
+        there = item.track.kind != "pedestrian" and beyond - item.track.length < item.rear < room
+        if there and item.front > look.around.front and abs(item.along) < SLOW:
             return {"intersection.exit_blocked": True}
     return {"intersection.exit_blocked": False} if room - look.around.front <= look.ranges.vehicles else {}

@@ -75,10 +75,8 @@ def _position(traffic: list[Lane], lane: Lane) -> dict[str, Value]:
     if lane not in traffic:
         return {"ego.lane_position": "bicycle_lane"} if "bicycle_lane" in lane.kinds else {}
     place = traffic.index(lane)
-    if len(traffic) == 1:
-        word = "only"
-    else:
-        word = "leftmost" if place == 0 else "rightmost" if place == len(traffic) - 1 else "middle"
+    words = {0: "leftmost", len(traffic) - 1: "rightmost"} if len(traffic) > 1 else {0: "only"}
+    word = words.get(place, "middle")
     return {"ego.lane_position": word, "ego.lane_from_right": float(len(traffic) - place)}
 
 

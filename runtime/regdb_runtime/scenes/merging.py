@@ -14,7 +14,7 @@ PERMISSIVE: frozenset[str] = frozenset((
     "hydrant.shorter_distance_kept", "safety_zone.other_length_marked", "crosswalk.other_distance_marked", "lane.designated_for_turn",
 ))  # fmt: skip
 """Facts whose truth frees the vehicle from something; of all others it is truth that binds."""
-LEAST: frozenset[str] = frozenset(("posted.speed", "posted.advisory_speed", "posted.truck_speed", "posted.weight", "road.sight_distance", "visibility.distance"))
+LEAST: frozenset[str] = frozenset(("posted.speed", "posted.advisory_speed", "posted.truck_speed", "posted.weight"))
 """Numbers of which the smaller one binds, besides every distance to something."""
 
 

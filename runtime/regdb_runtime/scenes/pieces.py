@@ -6,6 +6,7 @@ import datetime
 import math
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 
@@ -129,7 +130,7 @@ class LanePieces:
             borders |= self._where_distance_counts(lane, zone, start, end)
         ordered = sorted(borders)
         base = self.facts_of(lane)
-        for start, end in zip(ordered, ordered[1:], strict=False):
+        for start, end in pairwise(ordered):
             if end - start > PRECISION:
                 here = [zone for zone, first, last in inner if first <= (start + end) / 2 <= last]
                 facts = dict(base)
@@ -181,15 +182,19 @@ class LanePieces:
         if lane not in self._bands:
             found = self.road_map.lanes[lane]
             walks = [
-                Band(walk.id, start, end, walk.marked) for walk in self.road_map.crosswalks for start, end in areas_along(found, walk.polygon, self._step / 2)
-            ]
+                Band(walk.id, start, end, walk.marked)
+                for walk in self.road_map.crosswalks for start, end in areas_along(found, walk.polygon, self._step / 2)
+            ]  # fmt: skip
             rails = [
-                Band(zone.id, start, end, True, zone.facts)
+                Band(zone.id, start, end, facts=zone.facts)
                 for zone in self.road_map.zones if zone.kind == RAIL for start, end in areas_along(found, zone.polygon, self._step / 2)
             ]  # fmt: skip
-            order = (lambda band: (band.start, band.id))
-            self._bands[lane] = tuple(sorted(walks, key=order)), tuple(sorted(rails, key=order))
+            self._bands[lane] = tuple(sorted(walks, key=_in_order)), tuple(sorted(rails, key=_in_order))
         return self._bands[lane]
+
+
+def _in_order(band: Band) -> tuple[float, str]:
+    return band.start, band.id
 
 
 def _governing(zones: list[Zone]) -> str | None:

@@ -98,7 +98,7 @@ class Candidate:
         """Roles that are the same on every part of the path."""
         maneuver = self.maneuver
         cruise = maneuver.goal.cruise_speed if maneuver.passes is not None else 0.0
-        key = id(maneuver.lane_path.path), self.own.id, None if self.target is None else self.target.id, maneuver.passes, maneuver.passing_side, cruise
+        key = maneuver.lane_path.path, self.own.id, None if self.target is None else self.target.id, maneuver.passes, maneuver.passing_side, cruise
         if key not in self.instant.shared:
             self.instant.shared[key] = self._along_the_road()
         moves = {"ego.turn_signal": maneuver.turn_signal, "ego.speed": self.instant.observation.ego.speed, **self._signalled()}
@@ -130,7 +130,7 @@ class Candidate:
         return [(low, high, band.id) for low, high, band in found if high > start and low < end]
 
     def crosswalk_roles(self, part: Part) -> tuple[dict[str, Value], float | None, bool | None]:
-        """Facts of the crosswalks still to be crossed from a part on, the station where plans are held to enter them, and whether somebody is in one."""
+        """Facts of the crosswalks still to be crossed from a part on, the station from which plans enter one, and whether somebody is in one."""
         junction = self.maneuver.junction
         end = part.end if part.stage == "road" or junction is None else max(part.end, junction.exit + BEYOND_EXIT)
         bands = self._crosswalks(max(part.start, self.around.front), end)
@@ -138,7 +138,8 @@ class Candidate:
             return ({"pedestrian.in_crosswalk": False} if self.instant.eye.has_tracks else {}), None, False
         marked = any(walk.marked for walk in self.scenes.road_map.crosswalks if walk.id in {name for _, _, name in bands})
         facts: dict[str, Value] = {"crosswalk.present": True, "crosswalk.marked": marked}
-        taken = [(low, self.instant.walkers.in_crosswalk(name)) for low, _, name in bands]
+        edge = self.around.front + 0.1  # who is in it already is held not to go on
+        taken = [(max(low, edge), self.instant.walkers.in_crosswalk(name)) for low, _, name in bands]
         first = next((low for low, here in taken if here is True), next((low for low, here in taken if here is None), taken[0][0]))
         if not self.instant.eye.has_tracks:
             return facts, first, None
@@ -175,7 +176,7 @@ class Candidate:
             return {}
         facts: dict[str, Value] = {}
         if self.instant.eye.has_tracks and self.crossings is not None:
-            key = "junction", id(self.maneuver.lane_path.path), junction.id, self.own.id
+            key = "junction", self.maneuver.lane_path.path, junction.id, self.own.id
             if key not in self.instant.shared:
                 self.instant.shared[key] = junction_roles(self.look, self._entering(), self.turns)
             facts |= self.instant.shared[key]
@@ -184,11 +185,13 @@ class Candidate:
 
     def _entering(self) -> Entering:
         junction, crossings = self.maneuver.junction, self.crossings
-        assert junction is not None and crossings is not None
+        assert junction is not None
+        assert crossings is not None
         limits = {way.lane: limit for way in crossings.ways if (limit := self.scenes.road_map.lanes[way.lane].speed_limit) is not None}
         green = self.signal.get("signal.color") == "green" and self.signal.get("signal.flashing") is False
         return Entering(
-            junction, crossings.ways, limits, self.instant.arriving(crossings), self.history.past.arrivals, green, junction.entrance - self.around.front,
+            junction, crossings.ways, limits, self.instant.arriving(crossings), self.history.past.arrivals, green,
+            junction.entrance - self.around.front,
         )  # fmt: skip
 
     def turn(self, standing: Mapping[str, Value]) -> dict[str, Value]:
@@ -198,10 +201,10 @@ class Candidate:
         facts = turn_facts(self.scenes.road_map, self.approach, self.maneuver.junction.turn, standing)
         if self.leaving is not None:
             pieces = self.scenes.courses.pieces
-            facts |= destination_facts(self.scenes.road_map, self.scenes.road_map.lanes[self.inner], pieces.facts_of(self.leaving), self.maneuver.junction.turn)
+            facts |= destination_facts(pieces.facts_of(self.leaving), self.maneuver.junction.turn)
         return facts
 
-    def care(self, part: Part, crosswalk: float | None, occupied: bool | None) -> float:
+    def care(self, crosswalk: float | None, occupied: bool | None) -> float:
         """The way ahead that is clear of everybody to whom care is owed, metres from the front bumper: as far as sensors reach at most."""
         clear = min(self.scenes.ranges.vehicles, self.scenes.ranges.pedestrians)
         if crosswalk is not None and occupied is not False:
@@ -210,7 +213,8 @@ class Candidate:
         if found is not None:
             clear = min(clear, max(0.0, found.rear - self.around.front))
         for item in self.around.among(*self.look.path_strip):
-            if item.track.kind in ("pedestrian", "animal", "obstacle", "bicycle") and item.rear > self.around.front - 1.0 and item.track.id != self.maneuver.passes:
+            slow = item.track.kind in ("pedestrian", "animal", "obstacle", "bicycle") and item.track.id != self.maneuver.passes
+            if slow and item.rear > self.around.front - 1.0:
                 clear = min(clear, max(0.0, item.rear - self.around.front))
         return clear
 
@@ -238,7 +242,7 @@ def roles_on(candidate: Candidate, part: Part, standing: Mapping[str, Value]) ->
         if candidate.look.judged("speed.unsafe_for_conditions", fastest) is False:
             facts["speed.unsafe_for_conditions"] = False  # safe at the highest speed any plan may reach; else each plan's own speed decides
     if candidate.instant.eye.has_tracks:
-        clear = candidate.care(part, crosswalk, occupied)
+        clear = candidate.care(crosswalk, occupied)
         measures["plan.lacks_due_care"] = {"sight_distance": clear}
         lacking = candidate.look.judged("plan.lacks_due_care", {"speed": candidate.look.speed, "sight_distance": clear})
         if lacking is not None:

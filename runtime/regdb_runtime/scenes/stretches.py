@@ -85,6 +85,13 @@ class Scenes:
     def stretches(self, observation: Observation, maneuver: Maneuver, history: History) -> tuple[Stretch, ...]:
         """The stretches of the manoeuvre's path from the front bumper on, in order, without gaps; at least one."""
         instant = self._at(observation)
+        key = _alike(maneuver, history)
+        if key not in instant.stretches:
+            instant.stretches[key] = self._made(instant, maneuver, history)
+        return instant.stretches[key]
+
+    def _made(self, instant: Instant, maneuver: Maneuver, history: History) -> tuple[Stretch, ...]:
+        observation = instant.observation
         around = instant.around(maneuver.lane_path.path)
         crossed = maneuver.junction is not None and history.past.line == maneuver.junction.id and history.past.crossed
         stages, line = stages_of(maneuver.junction, around.front, crossed, self.footprint.length, self.settings)
@@ -156,6 +163,15 @@ class Scenes:
     def _has_lights(junction: Junction | None, stage: Stage) -> bool:
         """Whether the map's lights decide what the signal shows, so that the eye's own word is only asked for where none of them is seen."""
         return stage != "approach" or (junction is not None and bool(junction.lights))
+
+
+def _alike(maneuver: Maneuver, history: History) -> tuple[object, ...]:
+    """What stretches depend on besides the observation; candidates that differ in their goals alone share them."""
+    side = maneuver.next.endswith("left") if maneuver.target_lane is not None else None
+    return (
+        maneuver.lane_path, maneuver.junction, maneuver.lane, maneuver.target_lane, side, maneuver.passes, maneuver.passing_side,
+        maneuver.turn_signal, maneuver.goal.cruise_speed, history.past,
+    )  # fmt: skip
 
 
 _NOWHERE = Junction("", 0.0, 0.0, 0.0, "straight", "none")

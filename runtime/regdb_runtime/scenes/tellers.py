@@ -1,4 +1,4 @@
-"""Who tells which fact: map, lanes, junctions, lights, tracked objects, clock, history, the vehicle, the plan; only the eye tells the rest of perception."""
+"""Who tells which fact: map, lanes, junctions, lights, road users, clock, history, the vehicle, the plan; of perception the eye tells the rest."""
 
 from __future__ import annotations
 

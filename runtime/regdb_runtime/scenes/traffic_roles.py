@@ -77,8 +77,7 @@ def _bicycles(look: Look) -> dict[str, Value]:
     """A bicycle ahead goes the same way in the lane or beside it, up to a lane's width from its edge."""
     right, left = look.own_strip[0] - look.settings.beside_lane, look.own_strip[1] + 0.5
     ahead = [item for item in look.around.among(right, left) if item.track.kind == "bicycle" and item.along > -look.settings.standstill]
-    ahead = [item for item in ahead if 0.0 < item.front - look.around.rear and item.rear - look.around.front <= look.ranges.bicycles]
-    return {"bicycle.ahead": any(item.front > look.around.front for item in ahead)}
+    return {"bicycle.ahead": any(item.front > look.around.front and item.rear - look.around.front <= look.ranges.bicycles for item in ahead)}
 
 
 def _stationary(look: Look) -> dict[str, Value]:
@@ -87,8 +86,9 @@ def _stationary(look: Look) -> dict[str, Value]:
     right, left = look.path_strip
     for item in look.around.others:
         told = item.track.warning_lights != "none" or item.track.hazard_kind != "none"
-        near = item.is_motor and look.stands(item.track.speed) and not item.overlaps(right + 0.3, left - 0.3) and item.overlaps(right - reach, left + reach)
-        if told and near and item.front > look.around.rear and item.rear - look.around.front <= look.ranges.vehicles:
+        stands = item.is_motor and look.stands(item.track.speed)
+        near = not item.overlaps(right + 0.3, left - 0.3) and item.overlaps(right - reach, left + reach)
+        if told and stands and near and item.front > look.around.rear and item.rear - look.around.front <= look.ranges.vehicles:
             kind = item.track.hazard_kind if item.track.hazard_kind != "none" else "other_with_hazards"
             return {
                 "stationary_hazard_vehicle.beside": True, "stationary_hazard_vehicle.kind": kind,
@@ -117,7 +117,8 @@ def _oncoming(look: Look) -> dict[str, Value]:
     coming = [item for item in look.around.others if item.is_motor and item.along < -look.settings.standstill and item.rear >= look.around.front]
     coming = [item for item in coming if abs(item.offset) <= 4 * (look.path_strip[1] - look.path_strip[0])]
     nearest = min((item.rear - look.around.front for item in coming), default=look.ranges.vehicles)
-    behind = [look.around.rear - item.front for item in look.around.among(*look.own_strip) if item.is_motor and item.front <= look.around.rear and item.along > look.speed]
+    faster = [item for item in look.around.among(*look.own_strip) if item.is_motor and item.along > look.speed]
+    behind = [look.around.rear - item.front for item in faster if item.front <= look.around.rear]
     facts: dict[str, Value] = {
         "oncoming.meeting": bool(coming), "oncoming.distance": nearest, "road.passing_unsafe": bool(coming),
         "approaching_vehicle.distance": min([nearest, *behind]),
@@ -171,8 +172,9 @@ def _other_lanes(look: Look) -> dict[str, Value]:
 
 def near_in_lane(look: Look, strip: Strip) -> bool | None:
     """Whether somebody in a lane is so near that moving into it is no longer reasonably safe: alongside, or behind and too fast; None: open."""
-    verdicts = [_near(look, item) for item in look.around.among(*strip) if item.track.kind not in ("pedestrian", "obstacle") and item.along >= -look.settings.standstill]
-    return True if True in verdicts else None if None in verdicts else False
+    there = [item for item in look.around.among(*strip) if item.track.kind not in ("pedestrian", "obstacle")]
+    answers = [_near(look, item) for item in there if item.along >= -look.settings.standstill]
+    return True if True in answers else None if None in answers else False
 
 
 def _near(look: Look, item: Beside) -> bool | None:

@@ -58,7 +58,8 @@ class Walkers:
         """Near the crosswalk and walking into it."""
         if walker.speed < 0.1:
             return False
-        ahead = np.array([[walker.x + math.cos(walker.heading) * step, walker.y + math.sin(walker.heading) * step] for step in (0.5 * self._about_to, self._about_to)])
+        way = np.array([math.cos(walker.heading), math.sin(walker.heading)]) * self._about_to
+        ahead = np.array([walker.x, walker.y]) + np.array([way / 2, way])
         return bool(inside(ahead, polygon).any())
 
 
