@@ -17,13 +17,13 @@ class PathSettings:
     """How a line is made of waypoints, metres.
 
     `smoothing_length`: bends shorter than about six times this are noise of the map (a lane's corner is 10 m long and more); 0 takes the
-    waypoints as they are. `tolerance`: the line stays this near to every waypoint, whatever the smoothing would like: a third of what a
-    1.8 m car has on each side in a 3 m lane. `longest_chord`: along longer legs the map means them straight, and the line may not bulge.
+    waypoints as they are. `tolerance`: the line stays this near to every waypoint, whatever the smoothing would like: a sixth of what
+    a 1.8 m car has on each side in a 3 m lane. `longest_chord`: along longer legs the map means them straight, and the line may not bulge.
     `node_spacing`: of the spline's knots. `table_spacing`: of the table; between entries the path is developed to third order.
     """
 
     smoothing_length: float = 3.0
-    tolerance: float = 0.2
+    tolerance: float = 0.1
     longest_chord: float = 5.0
     node_spacing: float = 0.5
     table_spacing: float = 0.1
@@ -71,6 +71,8 @@ def tabulate(points: Floats, settings: PathSettings) -> PathTable:
     """The table of the line through waypoints (n, 2), n >= 2, none of them twice in a row."""
     from scipy.interpolate import CubicSpline  # type: ignore[import-untyped]  # 0.4 s to import, and only who plans needs it
 
+    origin = points[0]
+    points = points - origin  # maps in geographic grids are millions of metres from theirs
     knots = smoothed(points, settings) if settings.smoothing_length > 0.0 and len(points) > 2 else points
     chord = _chord(knots)
     spline = CubicSpline(chord, knots, axis=0)
@@ -84,7 +86,7 @@ def tabulate(points: Floats, settings: PathSettings) -> PathTable:
     curvature = (first[:, 0] * second[:, 1] - first[:, 1] * second[:, 0]) / speed**3
     heading = np.unwrap(np.arctan2(first[:, 1], first[:, 0]))
     return PathTable(
-        0.0, step, place[:, 0].copy(), place[:, 1].copy(), first[:, 0] / speed, first[:, 1] / speed, heading, curvature,
+        0.0, step, place[:, 0] + origin[0], place[:, 1] + origin[1], first[:, 0] / speed, first[:, 1] / speed, heading, curvature,
         np.gradient(curvature, step),
     )  # fmt: skip
 

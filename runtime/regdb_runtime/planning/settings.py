@@ -21,7 +21,8 @@ class LatticeSettings:
     `margin_braking`: m/s^2 over which a stop gives up its margin before the line rather than brake harder.
     `lateral_times`: shortest and longest time of a change of offset, s; `slowest`: speed (m/s) under which its length no longer shrinks.
     `lateral_grid`: metres; changes of offset end at multiples of a whole number of these, so that the next plan finds the same end again.
-    `cap_distance`, `cap_speed`: metres before a boundary, and m/s under a cap, that are aimed at. `headway`, `standstill_gap`: behind a leader.
+    `cap_distance`, `cap_speed`: metres before a boundary, and m/s under a cap, that are aimed at. `headway`, `standstill_gap`: behind a leader; the latter
+    more than the 3 m of the emergency check, which drawing up to a queue must not rouse.
     `standing`: m/s under which, within the slack of a stop point, the vehicle stays where it is.
     """
 
@@ -43,7 +44,7 @@ class LatticeSettings:
     cap_distance: float = 2.0
     cap_speed: float = 0.1
     headway: float = 1.5
-    standstill_gap: float = 2.0
+    standstill_gap: float = 4.0
     standing: float = 0.1
 
     @property

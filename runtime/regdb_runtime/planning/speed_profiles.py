@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,7 +12,7 @@ from regdb_runtime.planning.gates import Ahead, Gate, ahead
 from regdb_runtime.planning.goal import Goal
 from regdb_runtime.planning.polynomials import Chains, Floats, change_speed, change_time, change_way, quintic
 from regdb_runtime.planning.settings import LatticeSettings
-from regdb_runtime.trajectory import FrenetState
+from regdb_runtime.trajectory import STANDING, FrenetState
 
 SAME_SPEED = 1e-6
 REVERSE = -1e-4
@@ -45,10 +45,13 @@ def speed_profiles(
 ) -> tuple[Floats, Floats, Floats]:
     """Station, speed and acceleration along the path (p, t) of every motion; none goes backwards.
 
-    All start in the start state; those that pass where they should stand are left out unless all do. `front`: from the rear axle to the front bumper, metres.
+    All start in the start state; those that pass where they should stand are left out unless all do. `front`: from the rear axle to the
+    front bumper, metres.
     """
+    if start.s_dot <= STANDING and start.s_ddot < 0.0:
+        start = replace(start, s_ddot=0.0)  # brakes that hold a standing vehicle accelerate nothing
     view = ahead(start, goal, front, settings)
-    firsts = [_changes(start, goal, view, settings)]
+    firsts = [_changes(start, goal, view, settings), *_as_braking(start)]
     if not view.hold:
         firsts += [*_to_gates(start, view), *_to_stop(start, view, settings), *_behind(start, goal, view, front, settings)]
     each = ([getattr(first, name) for first in firsts] for name in ("pieces", "durations", "end_speeds", "free"))
@@ -75,6 +78,14 @@ def _changes(start: FrenetState, goal: Goal, view: Ahead, settings: LatticeSetti
         pairs += [(target, time) for time in sorted(times)]
     targets, durations = np.array(pairs).T
     return _Firsts(change_speed(speed, acceleration, targets, durations), durations, targets, np.ones(len(durations), dtype=bool))
+
+
+def _as_braking(start: FrenetState) -> list[_Firsts]:
+    """To a stand with the present braking, where that is so near that nothing smoother comes to a stand without going backwards."""
+    if start.s_ddot >= -SAME_SPEED or start.s_dot > -start.s_ddot:
+        return []
+    durations = np.array([start.s_dot / -start.s_ddot])
+    return [_Firsts.to_keep(np.array([[0.0, start.s_dot, start.s_ddot / 2, 0.0, 0.0, 0.0]]), durations, np.zeros(1))]
 
 
 def _targets(start: FrenetState, goal: Goal, view: Ahead, settings: LatticeSettings) -> list[float]:
