@@ -34,7 +34,10 @@ MOST_CUTS: Final = 64
 
 @dataclass(frozen=True, eq=False)
 class Contacts:
-    """For k plans: time of the first contact (seconds from now, never later than it is, by 6 cm of motion earlier at most; inf without one) and the row of the road user in the predictions (-1)."""
+    """For k plans: time of the first contact (seconds from now; inf without one) and the row of the road user in the predictions (-1).
+
+    The time is never later than the contact, and earlier by 6 cm of motion at most.
+    """
 
     time: Floats
     track: Integers

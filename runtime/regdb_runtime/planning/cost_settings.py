@@ -48,7 +48,7 @@ class CostSettings:
     comfort: tuple[tuple[str, float], ...] = ()
     wanted_clearance: float = 1.5
     instants: int = 6
-    nearby: float = 40.0
+    nearby: float = 80.0
     nearby_most: int = 6
     safe: SafeDistances = field(default_factory=SafeDistances)
 

@@ -74,9 +74,11 @@ def nearness(candidates: Candidates, settings: CostSettings, users: UsersAlongPa
 
 @dataclass(frozen=True, eq=False)
 class _Plans:
-    """All plans at the instants looked at, (t, N): the instants first, so that the worst of a plan is found row by row; stations from `origin` on. `rear`, `front`: the
-    plan's halves of the longitudinal distance; `leftwards`, `rightwards`: those of the lateral one, towards either side. `lowest`, `highest`:
-    offsets among all plans, (t, 1); `most_needed`: the greatest of their lateral halves."""
+    """All plans at the instants looked at, (t, N): the instants first, so that the worst of a plan is found row by row.
+
+    `station` counts from `origin`. `rear`, `front`: the plan's halves of the longitudinal distance; `leftwards`, `rightwards`: those of the
+    lateral one, towards either side. `lowest`, `highest`: offsets among all plans, (t, 1); `most_needed`: the greatest of the lateral halves.
+    """
 
     origin: float
     station: Floats
