@@ -73,14 +73,15 @@ def _plate(draw: Any, face: Face, width: int, height: int) -> None:
 
 def _corners(outline: str) -> list[Point]:
     cut = 1 / (2 + math.sqrt(2))
-    return {
+    corners: dict[str, list[Point]] = {
         "rectangle": [(0, 0), (1, 0), (1, 1), (0, 1)],
         "octagon": [(cut, 0), (1 - cut, 0), (1, cut), (1, 1 - cut), (1 - cut, 1), (cut, 1), (0, 1 - cut), (0, cut)],
         "triangle_down": [(0, 0), (1, 0), (0.5, 1)],
         "diamond": [(0.5, 0), (1, 0.5), (0.5, 1), (0, 0.5)],
         "pentagon": [(0.5, 0), (1, 0.45), (1, 1), (0, 1), (0, 0.45)],
         "pennant": [(0, 0), (1, 0.5), (0, 1)],
-    }[outline]
+    }
+    return corners[outline]
 
 
 def _shrunk(points: list[Point], by: float, width: int, height: int) -> list[Point]:
