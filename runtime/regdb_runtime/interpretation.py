@@ -53,6 +53,15 @@ def judge(profile: Interpretation, fact: str, measured: Numbers) -> Judgement:
     return _decided(profile, decision, held, numbers)
 
 
+def decide(profile: Interpretation, fact: str, measured: Numbers) -> bool | None:
+    """The value that `judge` gives, without its reasons: for those who ask often. Measures are taken for finite and unsigned as they come."""
+    decision = profile.decisions.get(fact)
+    if decision is None or not decision.formula or any(name not in measured for name in FORMULAS[decision.formula].measures):
+        return None
+    numbers = {name: item.si for name, item in decision.parameters.items()}
+    return _value(decision, measured, numbers, *_REQUIRED[decision.formula](measured, numbers))
+
+
 def judge_all(profile: Interpretation, measured: Mapping[str, Numbers]) -> tuple[Judgement, ...]:
     """Every fact the profile speaks of, from the measures given for it (fact -> measures). Raises ValueError as `judge` does."""
     return tuple(judge(profile, fact, measured.get(fact, {})) for fact in profile.decisions)
@@ -75,16 +84,21 @@ def _checked(fact: str, name: str, value: float) -> float:
 
 def _decided(profile: Interpretation, decision: Decision, held: Numbers, numbers: Numbers) -> Judgement:
     quantity, required = _REQUIRED[decision.formula](held, numbers)
-    unsafe: bool | None = held[quantity] < required
-    limit = numbers.get("up_to_speed")
-    if not unsafe and limit is not None and held["speed"] > limit:
-        unsafe = None
-    value = None if unsafe is None else unsafe is not (decision.true_when == SAFE)
+    value = _value(decision, held, numbers, quantity, required)
     relation = "less than" if held[quantity] < required else "at least"
     said = f"{quantity.replace('_', ' ')} {held[quantity]:.2f} m is {relation} the {required:.2f} m that {decision.formula} asks"
-    if unsafe is None:
-        said += f", but above {limit:.2f} m/s it asks for more without saying how much"
+    if value is None:
+        said += f", but above {numbers['up_to_speed']:.2f} m/s it asks for more without saying how much"
     return Judgement(decision.fact, profile.name, value, decision.formula, quantity, required, held, numbers, because=said)
+
+
+def _value(decision: Decision, held: Numbers, numbers: Numbers, quantity: str, required: float) -> bool | None:
+    """Whether the quantity falls short, in the sense of the fact; None where enough of it says nothing at this speed."""
+    unsafe = held[quantity] < required
+    limit = numbers.get("up_to_speed")
+    if not unsafe and limit is not None and held["speed"] > limit:
+        return None
+    return unsafe is not (decision.true_when == SAFE)
 
 
 def _rss_longitudinal(held: Numbers, numbers: Numbers) -> tuple[str, float]:

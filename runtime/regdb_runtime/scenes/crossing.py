@@ -77,6 +77,7 @@ class Crossings:
             if other.junction == junction and lane not in names and not other.kinds & NOT_FOR_TRAFFIC:
                 self._add(road_map, other, planned, entry, parts)
         self._segments = np.vstack(parts) if parts else np.empty((0, 7))
+        self._last: tuple[object, tuple[Arriving, ...]] = (None, ())
 
     def _add(self, road_map: RoadMap, lane: Lane, planned: Floats, entry: frozenset[str], parts: list[Floats]) -> None:
         if set(lane.predecessors) & entry:
@@ -97,8 +98,13 @@ class Crossings:
             before = _upstream(road_map, feeder, self.settings.upstream) if feeder else np.empty((0, 2))
             parts.append(_segments(before, own, len(self.ways) - 1))
 
-    def arriving(self, tracks: Iterable[Track]) -> tuple[Arriving, ...]:
+    def arriving(self, tracks: tuple[Track, ...]) -> tuple[Arriving, ...]:
         """Who is on those ways and has not left the meeting place behind: each road user on each way it may take, nearest first."""
+        if self._last[0] is not tracks:
+            self._last = tracks, self._arriving(tracks)
+        return self._last[1]
+
+    def _arriving(self, tracks: Iterable[Track]) -> tuple[Arriving, ...]:
         listed = [track for track in tracks if track.kind not in ("pedestrian", "animal", "obstacle")]
         if not listed or not len(self._segments):
             return ()
@@ -167,15 +173,28 @@ def _upstream(road_map: RoadMap, lane: str, reach: float) -> Floats:
     return line[np.concatenate((np.hypot(*np.diff(line, axis=0).T) > 1e-6, [True]))]
 
 
+def _straightened(line: Floats, bend: float = 0.01) -> Floats:
+    """The line without the points at which it hardly turns (radians since the last point kept)."""
+    steps = np.diff(line, axis=0)
+    headings = np.unwrap(np.arctan2(steps[:, 1], steps[:, 0]))
+    keep, last = [0], headings[0]
+    for row in range(1, len(headings)):
+        if abs(headings[row] - last) > bend:
+            keep.append(row)
+            last = headings[row]
+    return line[[*keep, len(line) - 1]]
+
+
 def _segments(before: Floats, own: Floats, way: int) -> Floats:
     """Straight pieces (k, 7) of a way: x, y, direction, length, station at its start (0 at the junction's edge), number of the way."""
-    line = np.vstack((before, own[:, :2])) if len(before) else own[:, :2]
+    line = np.vstack((_straightened(before), own[:, :2])) if len(before) else own[:, :2]
     steps = np.diff(line, axis=0)
     lengths = np.hypot(*steps.T)
     keep = lengths > 1e-6
     starts = np.concatenate(([0.0], np.cumsum(lengths)))[:-1]
-    edge = float(np.hypot(*np.diff(before, axis=0).T).sum()) if len(before) else 0.0
+    edge = 0.0
     if len(before):
-        edge += float(np.hypot(*(own[0, :2] - before[-1])))
+        straight = _straightened(before)
+        edge = float(np.hypot(*np.diff(np.vstack((straight, own[:1, :2])), axis=0).T).sum())
     number = np.full(int(keep.sum()), float(way))
     return np.column_stack((line[:-1][keep], steps[keep] / lengths[keep, None], lengths[keep], starts[keep] - edge, number))

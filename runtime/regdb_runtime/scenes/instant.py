@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from typing import TYPE_CHECKING
 
 from regdb.vocabulary import Value
 from regdb_runtime.maps.reference_path import ReferencePath
@@ -12,8 +13,16 @@ from regdb_runtime.scenes.around import Around, around
 from regdb_runtime.scenes.crossing import Arriving, Crossings
 from regdb_runtime.scenes.eye_facts import EyeReport
 from regdb_runtime.scenes.settings import SceneSettings, SensorRanges
-from regdb_runtime.scenes.stretch import Stretch
 from regdb_runtime.scenes.walkers import Walkers
+
+if TYPE_CHECKING:
+    from regdb_runtime.scenes.course import Part
+    from regdb_runtime.scenes.roles import OnPart, Viewpoint
+    from regdb_runtime.scenes.stretches import Encoded
+
+
+Viewed = tuple["Viewpoint", list[tuple["Part", "Encoded", "OnPart"]], float | None]
+"""One way to go: the view from it, the parts of its path with scenes and roles, and the station of the line ahead."""
 
 
 class Instant:
@@ -29,8 +38,7 @@ class Instant:
         self.walkers = Walkers(observation.ego, observation.tracks, crosswalks, ranges.pedestrians, settings.about_to_cross)
         self._around: dict[ReferencePath, Around] = {}
         self._arriving: dict[Crossings, tuple[Arriving, ...]] = {}
-        self.shared: dict[tuple[object, ...], Mapping[str, Value]] = {}
-        self.stretches: dict[tuple[object, ...], tuple[Stretch, ...]] = {}
+        self.views: dict[tuple[object, ...], Viewed] = {}
 
     def around(self, path: ReferencePath) -> Around:
         """The vehicle and everybody else on a path."""

@@ -4,13 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from functools import cached_property
 
 from regdb.interpretation import Interpretation
-from regdb_runtime.interpretation import judge
+from regdb_runtime.interpretation import decide
 from regdb_runtime.maneuver import Maneuver
 from regdb_runtime.maps.road_map import Lane, RoadMap, Side
 from regdb_runtime.observation import Footprint, Observation
-from regdb_runtime.scenes.around import Around
+from regdb_runtime.scenes.around import Around, Beside
 from regdb_runtime.scenes.lane_facts import beside
 from regdb_runtime.scenes.settings import SceneSettings, SensorRanges
 
@@ -44,11 +45,19 @@ class Look:
 
     def judged(self, fact: str, measured: Mapping[str, float]) -> bool | None:
         """What the interpretation in use says of a fact; None where it leaves it open."""
-        return judge(self.profile, fact, measured).value
+        return decide(self.profile, fact, measured)
 
     def stands(self, speed: float) -> bool:
         """Whether somebody with this speed stands."""
         return abs(speed) < self.settings.standstill
+
+    @cached_property
+    def lead(self) -> Beside | None:
+        """The nearest motor vehicle ahead in the vehicle's lane that does not come towards it."""
+        for item in self.around.among(*self.own_strip):
+            if item.is_motor and item.rear >= self.around.front - 1.0 and item.along > -self.settings.standstill:
+                return item if item.rear - self.around.front <= self.ranges.vehicles else None
+        return None
 
     def strip_beside(self, side: Side) -> tuple[Lane, Strip] | None:
         """The neighbouring lane of the same direction and its strip, None without one."""

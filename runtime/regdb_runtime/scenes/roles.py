@@ -1,14 +1,16 @@
-"""The roles of a candidate on each part of its path: facts for `Plan.facts`, and where its plans are measured."""
+"""The roles of everybody around on each part of a path: facts for `Plan.facts`, and where plans are measured."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING
 
 from regdb.vocabulary import Value
 from regdb_runtime.maneuver import Maneuver
 from regdb_runtime.maps.road_map import Lane
+from regdb_runtime.observation import TurnSignal
 from regdb_runtime.scenes.around import Around
 from regdb_runtime.scenes.course import Part
 from regdb_runtime.scenes.crossing import Crossings
@@ -20,7 +22,7 @@ from regdb_runtime.scenes.lane_facts import target_facts, turn_facts
 from regdb_runtime.scenes.light_facts import light_facts
 from regdb_runtime.scenes.look import Look, lanes_of, strips
 from regdb_runtime.scenes.merging import merge
-from regdb_runtime.scenes.traffic_roles import lead, traffic_roles
+from regdb_runtime.scenes.traffic_roles import traffic_roles
 from regdb_runtime.scenes.walkers import walker_roles
 
 if TYPE_CHECKING:
@@ -31,13 +33,24 @@ BEYOND_EXIT = 15.0
 """Metres beyond a junction within which a crosswalk belongs to it."""
 
 
-class Candidate:
-    """One manoeuvre at one instant: its lanes, its junction, everybody around it; worked out when asked for."""
+@dataclass(frozen=True, eq=False, slots=True)
+class OnPart:
+    """What roles come to on one part: facts, the station from which a plan is in a crosswalk, the clear way ahead (metres; None: not known)."""
 
-    def __init__(self, scenes: Scenes, instant: Instant, maneuver: Maneuver, around: Around, history: History, here: str) -> None:
+    facts: Mapping[str, Value]
+    crosswalk: float | None
+    clear: float | None
+
+
+class Viewpoint:
+    """One way to go at one instant, for all manoeuvres along it: its lanes, its junction, everybody around; worked out when asked for."""
+
+    def __init__(self, scenes: Scenes, instant: Instant, maneuver: Maneuver, around: Around, history: History) -> None:
         self.scenes, self.instant, self.maneuver, self.around, self.history = scenes, instant, maneuver, around, history
+        here = maneuver.lane_path.lane_at(around.front).lane
         self._here = scenes.road_map.lanes[here]
         self.own, self.target, self.side = lanes_of(scenes.road_map, maneuver, here)
+        self._turned: tuple[str, Mapping[str, Value]] | None = None
 
     @cached_property
     def _within(self) -> tuple[int, int] | None:
@@ -96,13 +109,8 @@ class Candidate:
     @cached_property
     def everywhere(self) -> Mapping[str, Value]:
         """Roles that are the same on every part of the path."""
-        maneuver = self.maneuver
-        cruise = maneuver.goal.cruise_speed if maneuver.passes is not None else 0.0
-        key = maneuver.lane_path.path, self.own.id, None if self.target is None else self.target.id, maneuver.passes, maneuver.passing_side, cruise
-        if key not in self.instant.shared:
-            self.instant.shared[key] = self._along_the_road()
-        moves = {"ego.turn_signal": maneuver.turn_signal, "ego.speed": self.instant.observation.ego.speed, **self._signalled()}
-        return {**self.instant.shared[key], **self.history.facts(), **moves, **target_facts(self.scenes.road_map, self.own, self.target, self.side)}
+        facts = {"ego.speed": self.instant.observation.ego.speed, **self.history.facts(), **self._along_the_road()}
+        return facts | target_facts(self.scenes.road_map, self.own, self.target, self.side)
 
     def _along_the_road(self) -> dict[str, Value]:
         facts: dict[str, Value] = {**self.instant.clock}
@@ -115,15 +123,6 @@ class Candidate:
                 del facts["movement.hazard"]
         merge(facts, self.instant.eye.roles)
         return facts
-
-    def _signalled(self) -> dict[str, Value]:
-        """How far the turn will have been signalled when it begins: so far, and on the way there while the signal stays on."""
-        past, junction = self.history.past, self.maneuver.junction
-        ahead = 0.0 if junction is None or not self.turns else max(0.0, junction.entrance - self.around.front)
-        if self.maneuver.turn_signal not in ("left", "right"):
-            return {"ego.signalled_distance": 0.0, "ego.signalled_time": 0.0}
-        before = past.signalled_distance if past.signal == self.maneuver.turn_signal else 0.0
-        return {"ego.signalled_distance": before + ahead}
 
     def _crosswalks(self, start: float, end: float) -> list[tuple[float, float, str]]:
         found = self.scenes.courses.crosswalks(self.maneuver.lane_path)
@@ -176,10 +175,7 @@ class Candidate:
             return {}
         facts: dict[str, Value] = {}
         if self.instant.eye.has_tracks and self.crossings is not None:
-            key = "junction", self.maneuver.lane_path.path, junction.id, self.own.id
-            if key not in self.instant.shared:
-                self.instant.shared[key] = junction_roles(self.look, self._entering(), self.turns)
-            facts |= self.instant.shared[key]
+            facts |= junction_roles(self.look, self._entering(), self.turns)
             merge(facts, self.instant.eye.roles)
         return facts
 
@@ -204,47 +200,62 @@ class Candidate:
             facts |= destination_facts(pieces.facts_of(self.leaving), self.maneuver.junction.turn)
         return facts
 
-    def care(self, crosswalk: float | None, occupied: bool | None) -> float:
-        """The way ahead that is clear of everybody to whom care is owed, metres from the front bumper: as far as sensors reach at most."""
+    @cached_property
+    def _clear(self) -> float:
+        """The way ahead without anybody in it, metres from the front bumper: as far as sensors reach at most."""
         clear = min(self.scenes.ranges.vehicles, self.scenes.ranges.pedestrians)
-        if crosswalk is not None and occupied is not False:
-            clear = min(clear, max(0.0, crosswalk - self.around.front))
-        found = lead(self.look)
-        if found is not None:
-            clear = min(clear, max(0.0, found.rear - self.around.front))
+        if self.look.lead is not None:
+            clear = min(clear, max(0.0, self.look.lead.rear - self.around.front))
         for item in self.around.among(*self.look.path_strip):
             slow = item.track.kind in ("pedestrian", "animal", "obstacle", "bicycle") and item.track.id != self.maneuver.passes
             if slow and item.rear > self.around.front - 1.0:
                 clear = min(clear, max(0.0, item.rear - self.around.front))
         return clear
 
+    def on(self, part: Part, standing: Mapping[str, Value]) -> OnPart:
+        """The roles of one part. `standing`: what holds there for every plan."""
+        walks, crosswalk, occupied = self.crosswalk_roles(part)
+        facts = {**self.everywhere, **walks}
+        if part.stage != "road":
+            facts |= self.at_junction
+            facts |= self._turn_on(part, standing)
+        if part.stage == "approach":
+            facts |= self.signal
+            facts["intersection.distance"] = 0.0
+        elif part.stage == "inside":
+            facts["plan.enters_intersection"] = False  # it is entered already; what lies ahead of the line is judged before it
+        elif self.maneuver.junction is not None and part.end <= self.maneuver.junction.entrance:
+            facts["intersection.distance"] = self.maneuver.junction.entrance - part.end
+        if not self.instant.eye.has_tracks:
+            return OnPart(facts, crosswalk, None)
+        clear = self._clear if crosswalk is None or occupied is False else min(self._clear, max(0.0, crosswalk - self.around.front))
+        lacking = self.look.judged("plan.lacks_due_care", {"speed": self.look.speed, "sight_distance": clear})
+        if lacking is not None:
+            facts["plan.lacks_due_care"] = lacking
+        return OnPart(facts, crosswalk, clear)
 
-def roles_on(candidate: Candidate, part: Part, standing: Mapping[str, Value]) -> tuple[dict[str, Value], Measures, float | None]:
-    """Facts of one part, the measures that do not depend on plans, and the station before which a plan does not enter a crosswalk."""
-    facts = dict(candidate.everywhere)
-    walks, crosswalk, occupied = candidate.crosswalk_roles(part)
-    facts |= walks
-    if part.stage != "road":
-        facts |= candidate.at_junction
-        facts |= candidate.turn(standing)
-    if part.stage == "approach":
-        facts |= candidate.signal
-        facts["intersection.distance"] = 0.0
-    elif part.stage == "inside":
-        facts["plan.enters_intersection"] = False  # it is entered already; what lies ahead of the line is judged before it
-    elif candidate.maneuver.junction is not None and part.end <= candidate.maneuver.junction.entrance:
-        facts["intersection.distance"] = candidate.maneuver.junction.entrance - part.end
+    def _turn_on(self, part: Part, standing: Mapping[str, Value]) -> Mapping[str, Value]:
+        if self._turned is None or self._turned[0] is not part.lane:
+            self._turned = part.lane, self.turn(standing)
+        return self._turned[1]
+
+    def signalled(self, signal: TurnSignal) -> dict[str, Value]:
+        """How far the turn will have been signalled when it begins: so far, and on the way there while the signal stays on."""
+        past, junction = self.history.past, self.maneuver.junction
+        facts: dict[str, Value] = {"ego.turn_signal": signal}
+        if signal not in ("left", "right"):
+            return facts | {"ego.signalled_distance": 0.0, "ego.signalled_time": 0.0}
+        ahead = 0.0 if junction is None or not self.turns else max(0.0, junction.entrance - self.around.front)
+        before = past.signalled_distance if past.signal == signal else 0.0
+        return facts | {"ego.signalled_distance": before + ahead}
+
+
+def measures_on(standing: Mapping[str, Value], clear: float | None) -> Measures:
+    """Fact -> the quantities that do not depend on plans, for facts that are judged by the plan's own too."""
     sight = [value for name in ("visibility.distance", "road.sight_distance") if isinstance(value := standing.get(name), float)]
     measures: dict[str, Mapping[str, float]] = {}
     if sight:
         measures["speed.unsafe_for_conditions"] = {"sight_distance": min(sight)}
-        fastest = {"speed": max(candidate.look.speed, candidate.maneuver.goal.cruise_speed), "sight_distance": min(sight)}
-        if candidate.look.judged("speed.unsafe_for_conditions", fastest) is False:
-            facts["speed.unsafe_for_conditions"] = False  # safe at the highest speed any plan may reach; else each plan's own speed decides
-    if candidate.instant.eye.has_tracks:
-        clear = candidate.care(crosswalk, occupied)
+    if clear is not None:
         measures["plan.lacks_due_care"] = {"sight_distance": clear}
-        lacking = candidate.look.judged("plan.lacks_due_care", {"speed": candidate.look.speed, "sight_distance": clear})
-        if lacking is not None:
-            facts["plan.lacks_due_care"] = lacking
-    return facts, measures, crosswalk
+    return measures

@@ -22,10 +22,10 @@ from regdb_runtime.scenes.course import Courses, Part, stages_of
 from regdb_runtime.scenes.crossing import Crossings
 from regdb_runtime.scenes.eye_facts import EyeReport
 from regdb_runtime.scenes.history import History, RailAhead, first_rail
-from regdb_runtime.scenes.instant import Instant
+from regdb_runtime.scenes.instant import Instant, Viewed
 from regdb_runtime.scenes.junction_facts import junction_facts
 from regdb_runtime.scenes.pieces import LanePieces, bounds_by_fact
-from regdb_runtime.scenes.roles import Candidate, roles_on
+from regdb_runtime.scenes.roles import OnPart, Viewpoint, measures_on
 from regdb_runtime.scenes.settings import EgoFacts, SceneSettings, SensorRanges, passenger_car
 from regdb_runtime.scenes.sign_facts import sign_codes
 from regdb_runtime.scenes.stretch import Stage, Stretch
@@ -36,7 +36,9 @@ REMEMBERED = 4096
 
 
 @dataclass(frozen=True, eq=False, slots=True)
-class _Encoded:
+class Encoded:
+    """A scene and its encoding."""
+
     scene: Scene
     prepared: PreparedScene
 
@@ -52,16 +54,17 @@ class Scenes:
         self.settings, self.ranges = settings or SceneSettings(), ranges or SensorRanges()
         self.profile = _profile(database, interpretation)
         self.ego = ego or passenger_car(database.vocabulary, footprint)
-        self._place = road_map.jurisdiction or self.settings.place
-        if self._place is None:
+        place = road_map.jurisdiction or self.settings.place
+        if place is None:
             raise RequestError("neither the map nor the settings say which jurisdiction governs; set SceneSettings.place")
+        self._place = place
         pieces = LanePieces(road_map, bounds_by_fact(database.regulations), sign_codes(database.vocabulary), self.settings.border_step)
         self.courses = Courses(pieces, self.settings)
         self._asked = tellers(database.vocabulary)
         self._sun = road_map.origin or self.settings.sun_at
         self._crossings: dict[tuple[str, ...], Crossings] = {}
         self._views: dict[tuple[str, int], View] = {}
-        self._encoded: dict[tuple[object, ...], _Encoded] = {}
+        self._encoded: dict[tuple[object, ...], Encoded] = {}
         self._eye: EyeReport | None = None
         self._instant: Instant | None = None
 
@@ -85,19 +88,27 @@ class Scenes:
     def stretches(self, observation: Observation, maneuver: Maneuver, history: History) -> tuple[Stretch, ...]:
         """The stretches of the manoeuvre's path from the front bumper on, in order, without gaps; at least one."""
         instant = self._at(observation)
-        key = _alike(maneuver, history)
-        if key not in instant.stretches:
-            instant.stretches[key] = self._made(instant, maneuver, history)
-        return instant.stretches[key]
+        key = _way(maneuver, history)
+        if key not in instant.views:
+            instant.views[key] = self._viewed(instant, maneuver, history)
+        view, parts, line = instant.views[key]
+        signalled = view.signalled(maneuver.turn_signal)
+        fastest = max(observation.ego.speed, maneuver.goal.cruise_speed)
+        return tuple(self._stretch(part, encoded, on, line, signalled, fastest, view) for part, encoded, on in parts)
 
-    def _made(self, instant: Instant, maneuver: Maneuver, history: History) -> tuple[Stretch, ...]:
-        observation = instant.observation
+    def _viewed(self, instant: Instant, maneuver: Maneuver, history: History) -> Viewed:
+        """The parts of one way to go, each with its scene and roles."""
+        observation, junction = instant.observation, maneuver.junction
         around = instant.around(maneuver.lane_path.path)
-        crossed = maneuver.junction is not None and history.past.line == maneuver.junction.id and history.past.crossed
-        stages, line = stages_of(maneuver.junction, around.front, crossed, self.footprint.length, self.settings)
+        crossed = junction is not None and history.past.line == junction.id and history.past.crossed
+        stages, line = stages_of(junction, around.front, crossed, self.footprint.length, self.settings)
         parts = self.courses.parts(maneuver.lane_path, around.front, self.settings.reach, stages, observation.clock, observation.ego.speed)
-        candidate = Candidate(self, instant, maneuver, around, history, parts[0].lane)
-        return tuple(self._stretch(part, instant, candidate, line) for part in parts)
+        view = Viewpoint(self, instant, maneuver, around, history)
+        found = []
+        for part in parts:
+            encoded = self._encode(part, junction if part.stage != "road" else None, view)
+            found.append((part, encoded, view.on(part, encoded.scene.facts)))
+        return view, found, line
 
     def _at(self, observation: Observation) -> Instant:
         """What candidates of one observation share."""
@@ -109,15 +120,19 @@ class Scenes:
             self._instant = Instant(observation, self.road_map, self.footprint, self.settings, self.ranges, self._eye, clock)
         return self._instant
 
-    def _stretch(self, part: Part, instant: Instant, candidate: Candidate, line: float | None) -> Stretch:
+    def _stretch(
+        self, part: Part, encoded: Encoded, on: OnPart, line: float | None, signalled: Mapping[str, Value], fastest: float, view: Viewpoint
+    ) -> Stretch:
+        roles = {**on.facts, **signalled}
+        measures = measures_on(encoded.scene.facts, on.clear)
+        sight = measures.get("speed.unsafe_for_conditions")
+        if sight is not None and view.look.judged("speed.unsafe_for_conditions", {"speed": fastest, **sight}) is False:
+            roles["speed.unsafe_for_conditions"] = False  # safe at the highest speed any plan may reach; else each plan's own speed decides
+        bus = view.around.front + 1.0 if encoded.scene.facts.get("school_bus.ahead") is True else None
         place = part.piece.jurisdiction or self._place
-        assert place is not None
-        encoded = self._encode(part, candidate.maneuver.junction if part.stage != "road" else None, candidate)
-        roles, measures, crosswalk = roles_on(candidate, part, encoded.scene.facts)
-        bus = candidate.around.front + 1.0 if instant.observation.facts.get("school_bus.ahead") is True else None
         return Stretch(
             part.start, part.end, place, part.clock, self.view(place, part.clock), encoded.scene, encoded.prepared, roles, part.lane, part.stage,
-            line if part.stage == "approach" else None, crosswalk, None if part.rail is None else part.rail_station, bus, measures,
+            line if part.stage == "approach" else None, on.crosswalk, None if part.rail is None else part.rail_station, bus, measures,
         )  # fmt: skip
 
     def view(self, place: str, clock: datetime.datetime) -> View:
@@ -128,27 +143,27 @@ class Scenes:
             found = self._views[key] = self.database.at(place, key[1])
         return found
 
-    def _encode(self, part: Part, junction: Junction | None, candidate: Candidate) -> _Encoded:
+    def _encode(self, part: Part, junction: Junction | None, view: Viewpoint) -> Encoded:
         """The facts that hold for every plan on a part, encoded; they change with the place and with what the eye reports."""
-        inner = None if junction is None else candidate.inner
+        inner = None if junction is None else view.inner
         key = id(part.piece), part.stage, None if junction is None else (junction.id, junction.turn, junction.control, inner), id(part.rail)
         found = self._encoded.get(key)
         if found is None:
             if len(self._encoded) >= REMEMBERED:
                 self._encoded.clear()
-            facts = self._standing(part, junction, candidate)
+            facts = self._standing(part, junction, view)
             assert self._eye is not None
             scene = Scene(self._eye.added_to(facts, self._has_lights(junction, part.stage)), self._eye.silent)
-            found = self._encoded[key] = _Encoded(scene, self.database.prepare(scene))
+            found = self._encoded[key] = Encoded(scene, self.database.prepare(scene))
         return found
 
-    def _standing(self, part: Part, junction: Junction | None, candidate: Candidate) -> dict[str, Value]:
+    def _standing(self, part: Part, junction: Junction | None, view: Viewpoint) -> dict[str, Value]:
         """What stands still: the vehicle's own make, the lane's piece, the junction's stage, the rails."""
         facts = {**self.ego.facts, **part.piece.facts}
-        inner = candidate.inner
+        inner = view.inner
         if junction is not None and inner is not None:
-            approach = candidate.approach
-            ways = () if candidate.crossings is None else tuple(candidate.crossings.ways)
+            approach = view.approach
+            ways = () if view.crossings is None else tuple(view.crossings.ways)
             facts |= junction_facts(self.road_map, junction, self.road_map.lanes[inner], approach, ways, part.stage)
         else:
             facts |= junction_facts(self.road_map, _NOWHERE, self._lane(part), None, (), "road")
@@ -165,12 +180,13 @@ class Scenes:
         return stage != "approach" or (junction is not None and bool(junction.lights))
 
 
-def _alike(maneuver: Maneuver, history: History) -> tuple[object, ...]:
-    """What stretches depend on besides the observation; candidates that differ in their goals alone share them."""
+def _way(maneuver: Maneuver, history: History) -> tuple[object, ...]:
+    """What tells one way to go from another; manoeuvres that differ in states, signals and goals alone share it."""
     side = maneuver.next.endswith("left") if maneuver.target_lane is not None else None
+    cruise = maneuver.goal.cruise_speed if maneuver.passes is not None else 0.0
     return (
-        maneuver.lane_path, maneuver.junction, maneuver.lane, maneuver.target_lane, side, maneuver.passes, maneuver.passing_side,
-        maneuver.turn_signal, maneuver.goal.cruise_speed, history.past,
+        maneuver.lane_path, maneuver.junction, maneuver.lane, maneuver.target_lane, side, maneuver.passes, maneuver.passing_side, cruise,
+        history.past,
     )  # fmt: skip
 
 

@@ -23,16 +23,8 @@ def traffic_roles(look: Look) -> dict[str, Value]:
     }  # fmt: skip
 
 
-def lead(look: Look) -> Beside | None:
-    """The nearest motor vehicle ahead in the vehicle's lane that does not come towards it."""
-    for item in look.around.among(*look.own_strip):
-        if item.is_motor and item.rear >= look.around.front - 1.0 and item.along > -look.settings.standstill:
-            return item if item.rear - look.around.front <= look.ranges.vehicles else None
-    return None
-
-
 def _ahead(look: Look) -> dict[str, Value]:
-    found = lead(look)
+    found = look.lead
     facts: dict[str, Value] = {"lead.present": found is not None, "obstruction.ahead": _obstructed(look)}
     if found is not None:
         facts |= {"lead.speed": max(0.0, found.along), "lead.distance": max(0.0, found.rear - look.around.front)}
