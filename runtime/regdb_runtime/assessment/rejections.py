@@ -6,6 +6,7 @@ from dataclasses import dataclass, field
 
 from regdb.condition import linear_value
 from regdb.explanation import show_bound
+from regdb.meaning import UNKNOWN
 from regdb.regulation import Limit, Regulation
 from regdb.situation import Situation
 from regdb.units import SI_SYMBOL, unit_named
@@ -56,7 +57,8 @@ class Fallen:
 def rejection(verdict: Verdict, rule: Regulation, count: int = 1) -> Rejection:
     """One rule's objection as the log has it: with a limit what was measured and the bound, else what the rule asks; and what is not known."""
     situation = Situation(verdict.circumstances.vocabulary, verdict.scene, verdict.plan)
-    missing = f"not known: {', '.join(verdict.missing)}" if verdict.missing else ""
+    unknown = verdict.judgement.missing((rule,)) if verdict.verdict == UNKNOWN else ()
+    missing = f"not known: {', '.join(unknown)}" if unknown else ""
     for limit in rule.limits:
         bound = linear_value(limit.bound, situation)
         if bound is not None:
