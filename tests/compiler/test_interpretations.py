@@ -24,7 +24,7 @@ from regdb.interpretation import FORMULAS
 from regdb.situation import read_plan, read_scene
 from regdb.units import UNITS
 
-PROFILES = ("conservative", "rss", "statute_only")
+PROFILES = ("conservative", "planner", "rss", "statute_only")
 CLOSE = {"rear_speed": 25.0, "front_speed": 25.0, "gap": 10.0}
 
 

@@ -202,13 +202,10 @@ class Viewpoint:
 
     @cached_property
     def _clear(self) -> float:
-        """The way ahead without anybody in it, metres from the front bumper: as far as sensors reach at most."""
+        """The way ahead without anybody on foot, animal or thing in it, metres from the front bumper: as far as sensors reach at most."""
         clear = min(self.scenes.ranges.vehicles, self.scenes.ranges.pedestrians)
-        if self.look.lead is not None:
-            clear = min(clear, max(0.0, self.look.lead.rear - self.around.front))
         for item in self.around.among(*self.look.path_strip):
-            slow = item.track.kind in ("pedestrian", "animal", "obstacle", "bicycle") and item.track.id != self.maneuver.passes
-            if slow and item.rear > self.around.front - 1.0:
+            if item.track.kind in ("pedestrian", "animal", "obstacle") and item.rear > self.around.front - 1.0:
                 clear = min(clear, max(0.0, item.rear - self.around.front))
         return clear
 

@@ -15,7 +15,7 @@ from regdb_runtime.strategy.settings import StrategySettings
 class PlannerSettings:
     """Everything that can be set.
 
-    `interpretation`: the profile that decides facts for which the law has no number. Default `rss`: it decides all that driving asks;
+    `interpretation`: the profile that decides facts for which the law has no number. Default `planner`: `rss`, and the care of its own plans;
     `conservative` leaves passing undecided above 30 mph, and `statute_only` decides nothing.
 
     `strategic_period`: seconds between choices among states (2 Hz, as in the paper). Motion is planned at every call of `step`, 10 Hz or as the
@@ -25,7 +25,7 @@ class PlannerSettings:
     else. `margin`: metres kept to everybody's predicted body, for what tracking and sensing leave.
     """
 
-    interpretation: str = "rss"
+    interpretation: str = "planner"
     strategic_period: float = 0.5
     margin: float = 0.1
     strategy: StrategySettings = field(default_factory=StrategySettings)

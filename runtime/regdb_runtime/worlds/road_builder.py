@@ -11,6 +11,7 @@ from regdb.situation import quiet_facts
 from regdb.vocabulary import Vocabulary
 from regdb_runtime.errors import WorldError
 from regdb_runtime.maps.road_map import Floats, RoadMap, Sign, Turn, Zone
+from regdb_runtime.scenes.tellers import surveyed_facts
 from regdb_runtime.worlds.junction_builder import build_junctions
 from regdb_runtime.worlds.road_spec import SignSpec, StreetsSpec, ZoneSpec
 from regdb_runtime.worlds.streets import Streets, join_ends, place_on
@@ -50,7 +51,8 @@ def _along(streets: Streets, spec: ZoneSpec) -> Floats:
 def build_road_map(spec: StreetsSpec, vocabulary: Vocabulary) -> RoadMap:
     """The map of these streets. Raises WorldError for what does not fit together.
 
-    Its facts are the quiet value of every fact whose source is the map, so nothing mapped is unknown, and the spec's own.
+    Its facts are the quiet value of every fact whose source is the map or that the map tells for perception (no limit is posted where no lane
+    has one), so nothing mapped is unknown, and the spec's own.
     """
     streets = Streets(spec, vocabulary)
     lights, crosswalks, ends = build_junctions(streets)
@@ -59,7 +61,7 @@ def build_road_map(spec: StreetsSpec, vocabulary: Vocabulary) -> RoadMap:
         build_sign(streets, sign)
     zones = tuple(build_zone(streets, zone) for zone in spec.zones)
     quiet = {name: value for name, value in quiet_facts(vocabulary).items() if vocabulary.facts[name].source == "map"}
-    facts = quiet | streets.read(spec.facts, "streets")
+    facts = quiet | surveyed_facts(vocabulary) | streets.read(spec.facts, "streets")
     return RoadMap(streets.lanes, lights, streets.signs, zones, crosswalks, None, facts, spec.jurisdiction, "built-in")
 
 
