@@ -112,7 +112,9 @@ def nearest(
     """Gap, give and id of the road user with the least gap + give; (None, 0, None) with none in the corridor. Among equals the first in `tracks`."""
     found: tuple[float | None, float, str | None] = None, 0.0, None
     least = math.inf
-    for track in _near(ego, tracks, footprint, settings):
+    for track, bound in _near(ego, tracks, footprint, settings):
+        if bound > least:
+            continue
         gap = _gap(_corners(ego, track), ego.curvature, footprint, settings)
         if gap < math.inf:
             give = _give(ego, track, gap, footprint, settings)
@@ -121,24 +123,26 @@ def nearest(
     return found
 
 
-def _near(ego: EgoState, tracks: Sequence[Track], footprint: Footprint, settings: EmergencySettings) -> list[Track]:
-    """Tracks near enough to matter whose circle reaches the corridor's band, straight or round."""
+def _near(ego: EgoState, tracks: Sequence[Track], footprint: Footprint, settings: EmergencySettings) -> list[tuple[Track, float]]:
+    """Tracks near enough to matter whose circle reaches the corridor's band, straight or round, each with a lower bound of gap + give."""
     cos, sin = math.cos(ego.heading), math.sin(ego.heading)
     outermost = footprint.width / 2 + settings.side_margin
     look = settings.required(ego.speed) + settings.release_distance + footprint.length
     bend = abs(ego.curvature) > STRAIGHT
     center = 1 / ego.curvature if bend else 0.0
     band = math.hypot(abs(center) + outermost, footprint.front) - abs(center) if bend else outermost
+    reach = math.hypot(footprint.front, footprint.width / 2 + settings.side_margin)
     found = []
     for track in tracks:
         dx, dy, radius = track.x - ego.x, track.y - ego.y, (track.length + track.width) / 2
-        farthest = look + radius + settings.required(track.speed)
+        theirs = settings.required(track.speed)
+        farthest = look + radius + theirs
         if dx * dx + dy * dy > farthest * farthest:
             continue
         along, across = dx * cos + dy * sin, dy * cos - dx * sin
         aside = abs(math.hypot(along, across - center) - abs(center)) if bend else abs(across)
         if aside <= band + radius and (bend or along > -radius):
-            found.append(track)
+            found.append((track, math.hypot(dx, dy) - reach - radius - theirs))
     return found
 
 
@@ -168,7 +172,9 @@ def _gap(corners: Corners, curvature: float, footprint: Footprint, settings: Eme
         return _straight(corners, footprint.front, wide)
     inward = tuple((along, math.copysign(across, across * curvature)) for along, across in corners)
     radius = 1 / abs(curvature)
-    return min(_bend(inward, radius, footprint.front, wide), _bend(inward, radius, footprint.front, bare))
+    found = _bend(inward, radius, footprint.front, wide)
+    beside = min(along for along, _ in corners) < footprint.front
+    return min(found, _bend(inward, radius, footprint.front, bare)) if beside else found
 
 
 def _touches(corners: Corners, footprint: Footprint) -> bool:
