@@ -116,8 +116,8 @@ def dump(path):
         "intersections": {str(item.intersection_id): intersection(item) for item in network.intersections},
         "obstacles": {str(item.obstacle_id): obstacle(item) for item in scenario.obstacles},
         "problems": {
-            str(name): [item.initial_state.time_step, *points([item.initial_state.position])[0], item.initial_state.orientation, item.initial_state.velocity]
-            for name, item in problems.planning_problem_dict.items()
+            str(name): [one.time_step, *points([one.position])[0], one.orientation, one.velocity]
+            for name, one in ((name, item.initial_state) for name, item in problems.planning_problem_dict.items())
         },
     }  # fmt: skip
 

@@ -13,7 +13,6 @@ from typing import Any
 
 import numpy as np
 import pytest
-
 from regdb_runtime.maps.commonroad import read_commonroad
 from regdb_runtime.maps.commonroad_lanes import MARKINGS, MIRRORED, snake_case
 from regdb_runtime.maps.commonroad_signs import COLORS, DIRECTIONS

@@ -63,7 +63,7 @@ class XmlNode:
 
     def number(self) -> float:
         """The element's text as a finite number."""
-        return self._number(self.text, "holds")
+        return self._number(self.text, "holds ")
 
     def number_of(self, name: str, default: float | None = None) -> float:
         """An attribute as a finite number."""
@@ -75,9 +75,9 @@ class XmlNode:
         try:
             value = float(text)
         except ValueError:
-            raise self.fail(f"{verb} {text!r}, which is no number") from None
+            raise self.fail(f"{verb}{text!r}, which is no number") from None
         if not math.isfinite(value):
-            raise self.fail(f"{verb} {text!r}, which is no finite number")
+            raise self.fail(f"{verb}{text!r}, which is no finite number")
         return value
 
 
