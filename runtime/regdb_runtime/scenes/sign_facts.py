@@ -13,6 +13,9 @@ AT_JUNCTION = frozenset((
 ))  # fmt: skip
 """Signs that speak of the junction at the lane's end, wherever along the lane they stand; all others speak from their place on."""
 
+OF_THE_MOMENT = frozenset(("sign.school_beacon_flashing", "sign.school_hours", "sign.variable_limit"))
+"""What such a sign shows now: its being on the map does not say."""
+
 Codes = Mapping[str, tuple[str, ...]]
 """MUTCD code -> the facts of the vocabulary that such a sign makes true, or whose number it shows."""
 
@@ -21,7 +24,7 @@ def sign_codes(vocabulary: Vocabulary) -> Codes:
     """Code -> facts `sign.*` and `posted.*` that name it."""
     found: dict[str, list[str]] = {}
     for fact in vocabulary:
-        if fact.name.startswith(("sign.", "posted.")) and fact.codes.get("mutcd"):
+        if fact.name.startswith(("sign.", "posted.")) and fact.codes.get("mutcd") and fact.name not in OF_THE_MOMENT:
             found.setdefault(fact.codes["mutcd"], []).append(fact.name)
     return {code: tuple(names) for code, names in found.items()}
 
