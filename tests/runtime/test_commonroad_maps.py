@@ -224,7 +224,8 @@ def test_a_truncated_file_and_a_missing_one_are_told(tmp_path: Path) -> None:
 
 def test_a_stop_lines_idle_reference_is_noted_and_left_out(tmp_path: Path) -> None:
     file = tmp_path / "idle.xml"
-    file.write_text(NEW.read_text().replace('<lineMarking>solid</lineMarking><trafficLightRef ref="50"/>', '<lineMarking>solid</lineMarking><trafficLightRef ref="5"/>'))
+    marked = "<lineMarking>solid</lineMarking>"
+    file.write_text(NEW.read_text().replace(f'{marked}<trafficLightRef ref="50"/>', f'{marked}<trafficLightRef ref="5"/>'))
     road_map = read_commonroad(file)
     line = road_map.lanes["10"].stop_line
     assert line is not None

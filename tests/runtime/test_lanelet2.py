@@ -80,7 +80,10 @@ def test_rules(street: RoadMap) -> None:
     assert street.lanes["1003"].stop_line.id == "113"
 
 
-@pytest.mark.parametrize(("text", "speed"), [("30 mph", 13.4112), ("50", 50 / 3.6), ("50 km/h", 50 / 3.6), ("10 m/s", 10), ("de:urban", None), ("", None)])
+SPEEDS = {"30 mph": 13.4112, "50": 50 / 3.6, "50 km/h": 50 / 3.6, "10 m/s": 10.0, "de:urban": None, "": None}
+
+
+@pytest.mark.parametrize(("text", "speed"), SPEEDS.items())
 def test_speeds(text: str, speed: float | None) -> None:
     assert speed_of(text) == (None if speed is None else pytest.approx(speed))
 
