@@ -44,21 +44,27 @@ def _rss_lateral(left: Floats, right: Floats, numbers: Mapping[str, float]) -> F
     return numbers["fluctuation_margin"] + np.maximum(0.0, space)
 
 
-def following_unsafe(decision: Decision, gap: Floats, speed: Floats, lead_speed: Floats, settings: AssessmentSettings) -> Column | None:
-    """Whether the distance kept to the vehicle ahead falls short, (k,); gap and speeds (k, T). None when the profile does not say.
+def following_unsafe(
+    decision: Decision, gap: Floats, speed: Floats, lead_speed: Floats, step: float, settings: AssessmentSettings
+) -> Column | None:
+    """Whether the distance kept to the vehicle ahead falls short, (k,); gap and speeds (k, T), the gap infinite while not behind him, `step` in
+    seconds. None when the profile does not say.
 
-    Short at any instant is short. A gap that is too small from the first (another has cut in) must not shrink further and must have grown by
-    the end of the plan, unless the vehicle all but stands: nobody can do more.
+    Short at any instant is short. Of a gap that is too small from the first (another has cut in) it is asked that it be restored: once the
+    vehicle has had time to respond it is no smaller than it was, measured by what is needed, and at the end of the plan it has grown, unless
+    the vehicle all but stands. Nobody can do more.
     """
     needs = _BEHIND.get(decision.formula)
     if needs is None:
         return None
     margin = gap - needs(speed, np.broadcast_to(np.maximum(lead_speed, 0.0), speed.shape), _numbers(decision))
-    now = np.minimum(margin[:, 0], 0.0)
-    shrinks = margin.min(axis=1) < now - settings.line_tolerance
-    grown = margin[:, -1] - now >= 0.1 * settings.recovery
-    still_short = (margin[:, -1] < 0.0) & ~grown & (speed[:, -1] > 10 * settings.standstill)
-    return _decided(decision, np.asarray(shrinks | still_short))
+    now = margin[:, 0]
+    responded = min(round(settings.response / step), margin.shape[1] - 1)
+    falls_short = margin.min(axis=1) < -settings.line_tolerance
+    stands = speed[:, -1] <= settings.crawl
+    grown = (margin[:, -1] >= 0.0) | (margin[:, -1] - now >= settings.recovery) | stands
+    restored = (now < 0.0) & grown & (margin[:, responded:].min(axis=1) >= now - settings.line_tolerance)
+    return _decided(decision, np.asarray(falls_short & ~restored))
 
 
 def unsafe_pass(decision: Decision, plans: Extents, passed: Other, step: float, speed: Floats) -> Column | None:

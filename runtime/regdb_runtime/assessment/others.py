@@ -95,9 +95,10 @@ def side_gap(plans: Extents, other: Other) -> Floats:
     return np.asarray(np.where(beside(plans, other), gap, np.inf))
 
 
-def gap_ahead(plans: Extents, other: Other) -> Floats:
-    """Bumper to bumper, from the front of the vehicle to the rear end of who drives ahead, (k, T); negative when past it."""
-    return np.asarray(other.rear - plans.front)
+def gap_behind(plans: Extents, other: Other) -> Floats:
+    """Bumper to bumper, from the front of the vehicle to the rear end of who drives ahead, (k, T); infinite while no part of it is behind him."""
+    behind = (plans.left > other.right) & (plans.right < other.left)
+    return np.asarray(np.where(behind, other.rear - plans.front, np.inf))
 
 
 def passing_distance(plans: Extents, other: Other, speed: Floats) -> Floats:

@@ -37,7 +37,7 @@ from regdb_runtime.trajectory import Candidates, Floats
 class Measuring:
     """What measuring all plans of one manoeuvre needs: the manoeuvre, its stretches, the road across its path, the others on it.
 
-    `lead`: who drives ahead and is not to be passed.
+    `lead`: who drives ahead, he that is to be passed as long as the vehicle is still behind him.
     """
 
     maneuver: Maneuver
@@ -64,7 +64,7 @@ def measuring(
     by_id = {other.id: other for other in placed}
     near = tuple(other for other in placed if other.id != maneuver.passes and other.kind in passing.KIND_PASSED)
     passed = by_id.get(maneuver.passes) if maneuver.passes is not None else None
-    lead = by_id.get(lead_id) if lead_id is not None and lead_id != maneuver.passes else None
+    lead = by_id.get(lead_id) if lead_id is not None else passed
     asked = _least_clearance(maneuver, stretches) if settings.claims_no_room else 0.0
     what = Passing(maneuver, passed, near, sections, footprint, settings, profile, asked)
     return Measuring(maneuver, stretches, footprint, settings, profile, sections, shared, what, lead)
@@ -88,8 +88,9 @@ def measure(what: Measuring, candidates: Candidates, rows: NDArray[np.intp]) -> 
     columns["plan.stop_places"] = stop_places(plans, speed, what.maneuver.junction, settings)
     if what.sections is not None:
         driven_over.measure(columns, what.sections, plans, candidates, rows, what.maneuver, settings)
-    passing.measure(columns, what.passing, plans, speed, float(candidates.time[1] - candidates.time[0]))
-    _following(columns, what, plans, speed)
+    step = float(candidates.time[1] - candidates.time[0])
+    passing.measure(columns, what.passing, plans, speed, step)
+    _following(columns, what, plans, speed, step)
     reached, of_stretch = _by_stretch(what, plans, speed)
     within = [(plans.front >= stretch.start) & (plans.front < stretch.end) for stretch in what.stretches]
     return PlanFacts(what.shared, columns, of_stretch, reached, len(rows), speed, within)
@@ -110,14 +111,14 @@ def _least_clearance(maneuver: Maneuver, stretches: Sequence[Stretch]) -> float:
     return max(bounds, default=0.0)
 
 
-def _following(columns: dict[str, Column], what: Measuring, plans: Extents, speed: Floats) -> None:
+def _following(columns: dict[str, Column], what: Measuring, plans: Extents, speed: Floats, step: float) -> None:
     if what.lead is None:
         return
-    gap = others.gap_ahead(plans, what.lead)
+    gap = others.gap_behind(plans, what.lead)
     columns["plan.following_distance"] = number(np.maximum(gap.min(axis=1), 0.0), what.settings.decimals)
     decision = judged_facts.decided_by(what.profile, "lead.following_unsafe")
     if decision is not None:
-        column = judged_facts.following_unsafe(decision, gap, speed, what.lead.along, what.settings)
+        column = judged_facts.following_unsafe(decision, gap, speed, what.lead.along, step, what.settings)
         if column is not None:
             columns["lead.following_unsafe"] = column
 

@@ -25,8 +25,12 @@ class AssessmentSettings:
     """Metres of road ahead taken to be seen where nothing says less; the range within which the vocabulary lets perception be relied on."""
     passing_range: float = 6.0
     """Metres edge to edge beyond which going by somebody is no overtaking of him: more than a lane and a half."""
-    recovery: float = 0.2
-    """m/s by which a gap that is already too small must grow until the plan ends, unless the vehicle all but stands."""
+    response: float = 2.0
+    """Seconds after which a gap that is too small from the first must not be smaller still: a second to respond, one to brake in."""
+    recovery: float = 1.0
+    """Metres by which such a gap must have grown, measured by what is needed, when the plan ends."""
+    crawl: float = 1.0
+    """m/s below which the vehicle all but stands, and nothing more can be asked of it."""
     claims_no_room: bool = False
     """Whether plans claim that no path leaves the clearance the law asks. The claim opens an exception (CVC 21760(d)); waiting behind needs none."""
     duties: tuple[Duty, ...] = DUTIES
