@@ -10,7 +10,8 @@ from itertools import pairwise
 import numpy as np
 
 from regdb_runtime.maps.junctions import side_by_side
-from regdb_runtime.maps.lines import SAME_POINT, angle, inside, project
+from regdb_runtime.maps.lane_cells import LaneCell, Place
+from regdb_runtime.maps.lines import SAME_POINT
 from regdb_runtime.maps.road_map import Floats, Lane, RoadMap
 
 NOT_DRIVEN = frozenset(("crosswalk", "sidewalk", "walkingarea", "border", "restricted_area"))
@@ -26,85 +27,71 @@ def is_driven(lane: Lane) -> bool:
     return not lane.kinds & OFF_ROUTE and (not lane.users or bool(lane.users & DRIVERS))
 
 
+CELL = 10.0
+"""Side of the squares by which lanes are found, metres: about three lanes, so that a square holds few."""
+CHOICES = 512
+"""Sets of lanes asked for by `among` whose arrays are kept."""
+
+
 class LaneGraph:
     """Built once per map; every answer is the same for the same question, ties by id."""
 
     def __init__(self, road_map: RoadMap) -> None:
         self.road_map = road_map
-        self._names = sorted(name for name, lane in road_map.lanes.items() if not lane.kinds & NOT_DRIVEN)
-        self._outlines: dict[str, Floats] = {}
+        self._driven = sorted(name for name, lane in road_map.lanes.items() if not lane.kinds & NOT_DRIVEN)
+        self._cells: dict[tuple[int, int], LaneCell] = {}
+        self._chosen: dict[tuple[str, ...], LaneCell] = {}
 
-    @cached_property
-    def _boxes(self) -> Floats:
-        corners = [self._outline(name) for name in self._names]
-        return np.array([(*outline.min(axis=0), *outline.max(axis=0)) for outline in corners]).reshape(-1, 4)
-
-    def _outline(self, name: str) -> Floats:
-        """The lane's polygon: its left side forth, its right side back."""
-        if name not in self._outlines:
-            lane = self.road_map.lanes[name]
-            self._outlines[name] = np.vstack((lane.left_line, lane.right_line[::-1]))
-        return self._outlines[name]
-
-    def lane_at(
-        self, x: float, y: float, heading: float | None = None, among: Collection[str] | None = None
-    ) -> tuple[str, float, float] | None:
+    def lane_at(self, x: float, y: float, heading: float | None = None, among: Collection[str] | None = None) -> Place | None:
         """The lane in which (x, y) lies, with the station along its centre and the offset (positive left), metres; None outside all lanes.
 
         Where lanes overlap, the one whose course agrees best with `heading` (in steps of 20 degrees), then the one whose centre is nearest.
         `among` limits the question to some lanes; without it, lanes of kinds on which no vehicle drives are left out.
         """
-        names = self._candidates(x, y) if among is None else sorted(name for name in among if name in self.road_map.lanes)
-        point = np.array([[x, y]])
-        within = [name for name in names if inside(point, self._outline(name))[0]]
-        if not within:
-            within = [name for name in names if self._on_edge(point, name)]
-        if not within:
-            return None
-        best = min((self._fit(point, name, heading) for name in within), key=lambda fit: fit[0])
-        return best[1:]
+        if among is not None:
+            return self._among(tuple(sorted(name for name in among if name in self.road_map.lanes))).find(x, y, heading)
+        return self._cell(x, y).find(x, y, heading)
 
-    def lanes_at(self, points: Floats, headings: Floats | None = None) -> list[tuple[str, float, float] | None]:
-        """`lane_at` for many points (m, 2) and headings (m,), in one pass over the lanes."""
-        hits: list[list[str]] = [[] for _ in points]
-        boxes = self._boxes
-        for row, name in enumerate(self._names):
-            low, high = boxes[row, :2], boxes[row, 2:]
-            near = np.flatnonzero(((points >= low) & (points <= high)).all(axis=1))
-            if len(near):
-                for index in near[inside(points[near], self._outline(name))]:
-                    hits[index].append(name)
-        found: list[tuple[str, float, float] | None] = []
-        for index, names in enumerate(hits):
-            heading = None if headings is None else float(headings[index])
-            among = names or None
-            found.append(self.lane_at(float(points[index, 0]), float(points[index, 1]), heading, among))
-        return found
+    def lanes_at(self, points: Floats, headings: Floats | None = None) -> list[Place | None]:
+        """`lane_at` for many points (m, 2) and headings (m,)."""
+        courses = [None] * len(points) if headings is None else headings.tolist()
+        return [self._cell(x, y).find(x, y, heading) for (x, y), heading in zip(points.tolist(), courses, strict=True)]
 
-    def nearest(self, x: float, y: float, heading: float | None = None, reach: float = math.inf) -> tuple[str, float, float] | None:
+    def nearest(self, x: float, y: float, heading: float | None = None, reach: float = math.inf) -> Place | None:
         """The lane in which the place lies, else the driven one with the nearest centre within `reach` metres."""
         found = self.lane_at(x, y, heading)
         if found is not None:
             return found
-        point = np.array([[x, y]])
-        fits = [self._fit(point, name, heading) for name in self._names]
-        fits = [fit for fit in fits if abs(fit[3]) <= reach]
-        return min(fits, key=lambda fit: (abs(fit[3]), fit[0]))[1:] if fits else None
+        cell = self._among(tuple(self._driven))
+        fits = [cell.fit(row, x, y, heading) for row in range(len(cell.names))]
+        best = min(fits, key=lambda fit: (fit[1], fit), default=None)
+        return None if best is None or best[1] > reach else best[3:]
 
-    def _candidates(self, x: float, y: float) -> list[str]:
-        boxes = self._boxes
-        near = (boxes[:, 0] <= x) & (x <= boxes[:, 2]) & (boxes[:, 1] <= y) & (y <= boxes[:, 3])
-        return [self._names[row] for row in np.flatnonzero(near)]
+    @cached_property
+    def _boxes(self) -> Floats:
+        """Least and greatest x and y of each driven lane (n, 4)."""
+        lanes = (self.road_map.lanes[name] for name in self._driven)
+        sides = [np.vstack((lane.left_line, lane.right_line)) for lane in lanes]
+        return np.array([(*side.min(axis=0), *side.max(axis=0)) for side in sides]).reshape(-1, 4)
 
-    def _on_edge(self, point: Floats, name: str) -> bool:
-        outline = self._outline(name)
-        return abs(float(project(point, np.vstack((outline, outline[:1])))[1][0])) <= SAME_POINT
+    def _cell(self, x: float, y: float) -> LaneCell:
+        """The lanes whose boxes touch the square around a place."""
+        key = (math.floor(x / CELL), math.floor(y / CELL))
+        found = self._cells.get(key)
+        if found is None:
+            low, high = np.array(key) * CELL - SAME_POINT, (np.array(key) + 1) * CELL + SAME_POINT
+            boxes = self._boxes
+            near = (boxes[:, :2] <= high).all(axis=1) & (boxes[:, 2:] >= low).all(axis=1)
+            found = self._cells[key] = LaneCell([self._driven[row] for row in np.flatnonzero(near)], self.road_map.lanes)
+        return found
 
-    def _fit(self, point: Floats, name: str, heading: float | None) -> tuple[tuple[int, float, str], str, float, float]:
-        lane = self.road_map.lanes[name]
-        station, away = (float(value[0]) for value in project(point, lane.center))
-        off = 0.0 if heading is None else abs(angle(heading - self.heading(name, station)))
-        return (round(off / math.radians(20)), abs(away), name), name, station, away
+    def _among(self, names: tuple[str, ...]) -> LaneCell:
+        found = self._chosen.get(names)
+        if found is None:
+            if len(self._chosen) >= CHOICES:
+                self._chosen.clear()
+            found = self._chosen[names] = LaneCell(names, self.road_map.lanes)
+        return found
 
     def heading(self, lane: str, station: float) -> float:
         """Course of a lane's centre at a station, radians."""
