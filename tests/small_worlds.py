@@ -11,7 +11,6 @@ from typing import Any
 from regdb_runtime.database import RegulationDatabase
 from regdb_runtime.maneuver import Maneuver
 from regdb_runtime.maps.lane_path import LanePath, next_junction, path_along
-from regdb_runtime.maps.road_map import RoadMap
 from regdb_runtime.observation import EgoState, Footprint, Indication, Observation, Track, TurnSignal
 from regdb_runtime.planning.goal import Goal
 from regdb_runtime.scenes.history import History
@@ -58,12 +57,14 @@ def read(facts: Mapping[str, object]) -> dict[str, Value]:
 
 
 def road(**changes: Any) -> StreetsSpec:
-    """One straight road to the east, 400 m from x = 0, right-hand edge of the forward lanes south of y = 0; `zones`, `signs`, `facts` of the streets."""
+    """One straight road to the east, 400 m from x = 0, its forward lanes south of y = 0; `zones`, `signs`, `facts` are the streets'."""
     streets = {name: changes.pop(name) for name in ("zones", "signs", "facts", "jurisdiction") if name in changes}
     return StreetsSpec((RoadSpec("main", (Piece(400.0),), facts=changes.pop("facts_of_road", {}), **changes),), **streets)
 
 
-def cross(control: str = "signal", arms: Mapping[str, Mapping[str, Any]] | None = None, roads: Mapping[str, Any] | None = None, **streets: Any) -> StreetsSpec:
+def cross(
+    control: str = "signal", arms: Mapping[str, Mapping[str, Any]] | None = None, roads: Mapping[str, Any] | None = None, **streets: Any
+) -> StreetsSpec:
     """Four roads of 200 m that meet at the origin in junction `x`, 10 m from the middle. `arms`: changes by the road's name."""
     places = {"west": Pose(-210, 0, 0), "east": Pose(10, 0, 0), "south": Pose(0, -210, 90), "north": Pose(0, 10, 90)}
     ends = {"west": "end", "east": "start", "south": "end", "north": "start"}

@@ -8,12 +8,12 @@ from typing import Any
 
 import pytest
 import yaml
-from small_worlds import LIGHT, Street, car, cross, law, quiet_eye, read, road
-
-from regdb.situation import Plan, read_plan, read_scene
 from regdb_runtime.observation import Indication
 from regdb_runtime.scenes.stretch import Stretch
 from regdb_runtime.worlds.road_spec import SignSpec, ZoneSpec
+from small_worlds import LIGHT, Street, car, cross, law, quiet_eye, read, road
+
+from regdb.situation import Plan, read_plan, read_scene
 
 CASES = yaml.load((Path(__file__).resolve().parents[2] / "codes/cvc/cases/paper.yaml").read_text(), yaml.BaseLoader)["cases"]
 MPH, FT = 0.44704, 0.3048
@@ -67,7 +67,8 @@ def red_light(scene: dict[str, Any], plan: dict[str, Any], on: datetime.date) ->
 def school(scene: dict[str, Any], on: datetime.date) -> Stretch:
     """A school beside the road: its zone on the map, its signs on the map, its children seen."""
     away = float(read({"school.distance": scene["school.distance"]})["school.distance"])  # type: ignore[arg-type]
-    facts = {name: scene[name] for name in ("school.present", "school.zone", "school.local_act", "zone.posted_outside", "district.residence") if name in scene}
+    on_map = ("school.present", "school.zone", "school.local_act", "zone.posted_outside", "district.residence")
+    facts = {name: scene[name] for name in on_map if name in scene}
     zone = ZoneSpec("school", "school", "main", 20.0, 380.0, facts=facts, distance_fact="school.distance", landmark=(60.0 + away, -1.75))
     codes = {"sign.school": "S1-1", "sign.school_limit": "S5-1", "sign.school_children_present": "S4-2P"}
     signs = tuple(SignSpec(code, code, "main", 10.0) for fact, code in codes.items() if scene.get(fact) == "true")
@@ -105,7 +106,8 @@ def test_situation(case: dict[str, Any]) -> None:
     assert driven.verdict == by_hand.verdict
     assert [rule.id for rule in driven.deciding] == [rule.id for rule in by_hand.deciding]
     assert driven.missing == by_hand.missing
-    assert {name: item.bound for name, item in driven.combined.items()} == pytest.approx({name: item.bound for name, item in by_hand.combined.items()})
+    bounds = {name: item.bound for name, item in by_hand.combined.items()}
+    assert {name: item.bound for name, item in driven.combined.items()} == pytest.approx(bounds)
 
 
 def test_no_situation_is_left_out() -> None:

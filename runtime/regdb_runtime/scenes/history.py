@@ -9,7 +9,8 @@ from dataclasses import dataclass, replace
 from regdb.vocabulary import Value
 from regdb_runtime.maps.lane_path import Junction, LanePath
 from regdb_runtime.maps.road_map import RoadMap
-from regdb_runtime.observation import Footprint, Observation, TurnSignal
+from regdb_runtime.observation import Observation, TurnSignal
+from regdb_runtime.scenes.around import Around
 from regdb_runtime.scenes.crossing import Arriving, Crossings
 from regdb_runtime.scenes.lane_facts import lane_kind
 from regdb_runtime.scenes.pieces import Band
@@ -64,30 +65,31 @@ class RailAhead:
 
 CrossingsOfMap = Callable[[LanePath, Junction], Crossings | None]
 RailsOfMap = Callable[[LanePath, float], RailAhead | None]
-"""Where a map's ways through the junction ahead, and its rails, are looked up."""
+OnPath = Callable[[Observation, LanePath], Around]
+"""Where a map's ways through the junction ahead, its rails, and the vehicle's own place on a path are looked up."""
 
 
 class History:
     """Remembers what facts of history need. `update` once per observation, in order; `facts` answers for the last one."""
 
-    def __init__(self, road_map: RoadMap, footprint: Footprint, settings: SceneSettings, crossings: CrossingsOfMap, rails: RailsOfMap) -> None:
-        self._road_map, self._footprint, self._settings = road_map, footprint, settings
-        self._crossings, self._rails = crossings, rails
+    def __init__(self, road_map: RoadMap, settings: SceneSettings, crossings: CrossingsOfMap, rails: RailsOfMap, on_path: OnPath) -> None:
+        self._road_map, self._settings = road_map, settings
+        self._crossings, self._rails, self._on_path = crossings, rails, on_path
         self.past = Past()
 
     def update(self, observation: Observation, lane_path: LanePath, junction: Junction | None = None) -> None:
         """Take in one observation. `lane_path`: where the vehicle drives now; `junction`: the one it is in, else the next one on that path."""
         ego, past = observation.ego, self.past
-        station = float(lane_path.path.project([(ego.x, ego.y)], extend=True)[0][0])
-        front = station + self._footprint.front
+        here = self._on_path(observation, lane_path)
+        front = here.front
         moved = 0.0 if past.place is None else math.hypot(ego.x - past.place[0], ego.y - past.place[1])
         passed = 0.0 if past.place is None else observation.time - past.time
         past = replace(past, time=observation.time, place=(ego.x, ego.y))
         past = _signalled(past, ego.turn_signal, moved, passed)
         past = self._at_line(past, observation, junction, front)
-        past = self._at_rails(past, observation, self._rails(lane_path, station - self._footprint.rear_overhang), front)
+        past = self._at_rails(past, observation, self._rails(lane_path, here.rear), front)
         past = _for_bus(past, observation, self._settings.standstill)
-        past = self._in_turn_lane(past, lane_path.lane_at(station).lane, moved, passed)
+        past = self._in_turn_lane(past, lane_path.lane_at((here.front + here.rear) / 2).lane, moved, passed)
         self.past = self._arrived(past, observation, lane_path, junction, front)
 
     def facts(self) -> dict[str, Value]:
@@ -150,6 +152,8 @@ class History:
         if own is None and junction.stop_station - front <= self._settings.at_line:
             own = observation.time
         known = dict(before.others)
+        if junction.stop_station - front > self._settings.watched:
+            return replace(past, arrivals=Arrivals(own, (), observation.time))
         crossings = self._crossings(lane_path, junction)
         there = () if crossings is None else crossings.arriving(observation.tracks)
         others = {item.track.id: known.get(item.track.id, observation.time) for item in there if _has_arrived(item, self._settings.at_line)}

@@ -60,6 +60,8 @@ class SceneSettings:
     """A stop with the front no farther than this before the nearest rail is a stop before it (50 ft, CVC 22451 and 22452)."""
     together: float = 1.0
     """Two vehicles that reach the junction within this time reach it at the same time."""
+    watched: float = 60.0
+    """Who arrives at a junction is noted from so far before it on."""
     beside_lane: float = 3.7
     """A lane's width (12 ft): what stands no farther from the lane's edge stands immediately beside it."""
     about_to_cross: float = 1.5

@@ -17,6 +17,7 @@ from regdb_runtime.maneuver import Maneuver
 from regdb_runtime.maps.lane_path import Junction, LanePath
 from regdb_runtime.maps.road_map import Lane, RoadMap
 from regdb_runtime.observation import Footprint, Observation
+from regdb_runtime.scenes.around import Around
 from regdb_runtime.scenes.clock_facts import clock_facts
 from regdb_runtime.scenes.course import Courses, Part, stages_of
 from regdb_runtime.scenes.crossing import Crossings
@@ -70,7 +71,11 @@ class Scenes:
 
     def history(self) -> History:
         """A new, empty history of a vehicle on this map."""
-        return History(self.road_map, self.footprint, self.settings, self.crossings, self.rail)
+        return History(self.road_map, self.settings, self.crossings, self.rail, self.around)
+
+    def around(self, observation: Observation, lane_path: LanePath) -> Around:
+        """The vehicle and everybody else on a path."""
+        return self._at(observation).around(lane_path.path)
 
     def crossings(self, lane_path: LanePath, junction: Junction) -> Crossings | None:
         """The ways that meet the path's way through a junction, None where the path has no lane within it."""
