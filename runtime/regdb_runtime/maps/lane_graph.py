@@ -57,12 +57,14 @@ class LaneGraph:
         courses = [None] * len(points) if headings is None else headings.tolist()
         return [self._cell(x, y).find(x, y, heading) for (x, y), heading in zip(points.tolist(), courses, strict=True)]
 
-    def nearest(self, x: float, y: float, heading: float | None = None, reach: float = math.inf) -> Place | None:
-        """The lane in which the place lies, else the driven one with the nearest centre within `reach` metres."""
-        found = self.lane_at(x, y, heading)
+    def nearest(
+        self, x: float, y: float, heading: float | None = None, reach: float = math.inf, among: Collection[str] | None = None
+    ) -> Place | None:
+        """The lane in which the place lies, else the driven one (with `among`: one of those) with the nearest centre within `reach` metres."""
+        found = self.lane_at(x, y, heading, among)
         if found is not None:
             return found
-        cell = self._among(tuple(self._driven))
+        cell = self._among(tuple(self._driven) if among is None else tuple(sorted(name for name in among if name in self.road_map.lanes)))
         fits = [cell.fit(row, x, y, heading) for row in range(len(cell.names))]
         best = min(fits, key=lambda fit: (fit[1], fit), default=None)
         return None if best is None or best[1] > reach else best[3:]

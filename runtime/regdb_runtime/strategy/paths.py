@@ -23,8 +23,8 @@ ALIKE = 0.25
 """Neighbouring stretches whose speeds differ by less than this share become one, at the lower speed."""
 CURVE = "limit:curve"
 """What a cap for a curve cites: comfort, not law."""
-CARRY = 3.0
-"""Metres beside its lanes at which the vehicle still counts as on the route's nearest lane."""
+CARRY = 7.5
+"""Metres from a lane's centre at which the vehicle still counts as on the route's nearest lane: two lanes, for who passes on the other half."""
 
 
 class OffRoad(RegdbRuntimeError):  # noqa: N818  # reads as what it says
@@ -54,9 +54,8 @@ class Paths:
         if found is None:
             on_route = [name for row in self.route.segments for name in row]
             found = self.graph.lane_at(ego.x, ego.y, ego.heading, on_route)
+            found = found or self.graph.nearest(ego.x, ego.y, ego.heading, CARRY, on_route)
         if found is None:
-            found = self.graph.nearest(ego.x, ego.y, ego.heading, CARRY)
-        if found is None or self.route.segment_of(found[0]) is None:
             raise OffRoad(f"the vehicle at ({ego.x:.1f}, {ego.y:.1f}) is on no lane of its route to {self.route.goal}")
         return found[0], found[1]
 
