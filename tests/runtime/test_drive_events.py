@@ -104,7 +104,12 @@ def test_braking_for_a_zone_is_found_backwards_from_its_beginning() -> None:
 
 
 def test_a_zone_that_changes_nothing_has_no_events() -> None:
-    assert names(slowing(limit=35 * MPH)) == []
+    assert names(slowing(brakes_at=1000.0)) == []
+
+
+def test_a_zone_is_slowed_down_for_whatever_the_law_was_taken_to_say() -> None:
+    """A limit that may be in force is kept too; then no limit in force says why."""
+    assert names(slowing(limit=35 * MPH)) == ["zone_detected", "reduced_speed"]
 
 
 def test_a_limit_reached_too_late_is_told() -> None:

@@ -7,7 +7,7 @@
 | `stopped` | the vehicle stands with its front bumper at most 2 m before a stop line | right-on-red figure, first line |
 | `released` | it leaves the stop | right-on-red figure, second line |
 | `zone_detected` | braking for a zone ahead begins | speed figure, red line |
-| `reduced_speed` | the limit of the zone is reached, to be kept through it | speed figure, yellow line |
+| `reduced_speed` | the speed is reached that is kept through the zone | speed figure, yellow line |
 
 An overtaking that is broken off before the other is passed is `overtaking_given_up`.
 """
@@ -26,7 +26,9 @@ BEFORE_LINE = 2.0
 BRAKES = -0.1
 """m/s2 under which the vehicle brakes."""
 REACHED = 0.05
-"""m/s above a limit at which it counts as reached: what a tick at 10 Hz cannot tell apart while braking gently."""
+"""m/s above a speed at which it counts as reached: what a tick at 10 Hz cannot tell apart while braking gently."""
+LOWER = 0.5
+"""m/s by which a zone's speed must be lower than the one before it to be a reduced speed: about one mile per hour."""
 
 Record = Mapping[str, Any]
 
@@ -88,26 +90,21 @@ def _stops(ticks: Iterable[Record], line: float) -> Iterable[Event]:
 
 
 def _zone(ticks: Sequence[Record], start: float, end: float) -> Iterable[Event]:
-    """Braking for a zone is the deceleration that leads up to its beginning: found backwards from there."""
-    entered = next((index for index, tick in enumerate(ticks) if start <= tick["ego"]["front"] <= end), None)
-    if entered is None:
+    """Braking for a zone is what leads up to the speed kept in it: found backwards from its beginning."""
+    inside = [index for index, tick in enumerate(ticks) if start <= tick["ego"]["front"] <= end]
+    if not inside:
         return
-    limit = limit_at(ticks[entered])
-    reached = next((i for i, tick in enumerate(ticks) if i <= entered and limit is not None and _holds(ticks, i, entered, limit)), None)
-    if limit is None or reached is None:
-        return
+    kept = max(ticks[index]["ego"]["speed"] for index in inside) + REACHED
+    reached = inside[0]
+    while reached > 0 and ticks[reached - 1]["ego"]["speed"] <= kept:
+        reached -= 1
     last = next((i for i in range(reached, -1, -1) if ticks[i]["ego"]["acceleration"] < BRAKES), None)
-    if last is None:
+    if last is None or reached == 0:
         return
     first = next((i + 1 for i in range(last, -1, -1) if ticks[i]["ego"]["acceleration"] >= BRAKES), 0)
-    if ticks[first]["ego"]["speed"] > limit + REACHED:
+    if ticks[first]["ego"]["speed"] > kept + LOWER:
         yield _event("zone_detected", ticks[first])
         yield _event("reduced_speed", ticks[reached])
-
-
-def _holds(ticks: Sequence[Record], first: int, last: int, limit: float) -> bool:
-    """Whether the speed keeps to the limit from one tick to another."""
-    return all(tick["ego"]["speed"] <= limit + REACHED for tick in ticks[first : last + 1])
 
 
 def limit_at(tick: Record) -> float | None:

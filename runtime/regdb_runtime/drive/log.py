@@ -12,8 +12,6 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, TextIO
 
-import numpy as np
-
 from regdb_runtime.errors import LogError
 
 SCHEMA = "regdb-drive/1"
@@ -40,31 +38,32 @@ class LogWriter:
         self._stream = stream
 
     def write(self, record: Mapping[str, Any]) -> None:
-        """One record as one line; numbers rounded, what is not finite as null."""
+        """One plain record (see `plain`) as one line."""
         self._stream.write(line_of(record) + "\n")
 
 
 def line_of(record: Mapping[str, Any]) -> str:
-    """A record as its line, without the end of line."""
-    return json.dumps(plain(record), ensure_ascii=False, separators=(",", ":"), allow_nan=False)
+    """A plain record as its line, without the end of line."""
+    return json.dumps(record, ensure_ascii=False, separators=(",", ":"), allow_nan=False)
 
 
 def plain(value: Any) -> Any:
     """A value as JSON holds it: numbers rounded to DIGITS, sets sorted, numpy's numbers as Python's, infinities as None."""
-    if isinstance(value, np.generic):
-        value = value.item()
-    if value is None or isinstance(value, str | bool | int):
+    kind = value.__class__
+    if kind is float:
+        return round(value, DIGITS) + 0.0 if math.isfinite(value) else None  # adding zero makes -0.0 and 0.0 the same bytes
+    if kind in _AS_THEY_ARE:
         return value
-    if isinstance(value, Mapping):
-        return {str(key): plain(item) for key, item in value.items()}
-    if isinstance(value, frozenset | set):
-        return sorted(plain(item) for item in value)
+    if kind is dict or isinstance(value, Mapping):
+        return {key: plain(item) for key, item in value.items()}
     if isinstance(value, list | tuple):
         return [plain(item) for item in value]
-    number = float(value)
-    if not math.isfinite(number):
-        return None
-    return round(number, DIGITS) + 0.0  # adding zero makes -0.0 and 0.0 the same bytes
+    if isinstance(value, frozenset | set):
+        return sorted(plain(item) for item in value)
+    return plain(value.item())  # numpy's
+
+
+_AS_THEY_ARE = frozenset((str, bool, int, type(None)))
 
 
 @contextmanager

@@ -48,7 +48,7 @@ EXTENT = 152.4
 """500 ft, the reach of a school zone whose signs name none (22352 as of 2031); the band of 22358.4 lies between it and twice it."""
 _READ: Mapping[SchoolLaw, tuple[str, ...]] = {
     "school_sign": ("sign.school",), "no_sign": (), "limit_20": ("sign.school", "sign.school_limit"),
-    "children_sign": ("sign.school", "sign.school_children_present"), "band": ("sign.school", "sign.school_limit"),
+    "children_sign": ("sign.school", "sign.school_children_present"), "band": ("sign.school_limit",),
 }  # fmt: skip
 """The signs that stand by the school's road."""
 _SIGHT = 120.0
@@ -59,8 +59,9 @@ _SIGHT = 120.0
 class PaperScene:
     """What varies between the paper's scene and its variants; the defaults are the paper's own drive.
 
-    `lanes` in each direction of the first road, `width` of each, `divider` between them and `center` in the middle of the road. `light`: what the
-    ego meets, `no_turn_sign`, `pedestrian` and `cross_traffic` at it. `school`: which law the school's signs and the city's acts invoke.
+    `lanes` in each direction of the first road, `width` of each, `divider` between them and `center` in the middle of the road. `beside`: somebody
+    comes up in the second lane as the cyclist is met. `light`: what the ego meets; `no_turn_sign`, `pedestrian` and `cross_traffic` at it.
+    `school`: which law the school's signs and the city's acts invoke.
     """
 
     part: Part = "whole"
@@ -71,6 +72,7 @@ class PaperScene:
     divider: Marking = "dashed"
     center: Marking = "double_solid"
     cyclist: bool = True
+    beside: bool = True
     light: Light = "red"
     no_turn_sign: bool = False
     pedestrian: bool = False
@@ -119,9 +121,13 @@ def _first_road(scene: PaperScene) -> RoadSpec:
 
 
 def _school_road(scene: PaperScene) -> RoadSpec:
-    posted = MPH_30 if scene.school == "band" else MPH_35
     facts = {"district.residence": "true"} if scene.school == "band" else {}
-    return RoadSpec("school", (Piece(SCHOOL_ROAD[scene.part]),), Pose(HALF, -HALF, 270.0), 1, 1, 3.5, posted, "double_solid", facts=facts)
+    return RoadSpec("school", (Piece(SCHOOL_ROAD[scene.part]),), Pose(HALF, -HALF, 270.0), 1, 1, 3.5, _posted(scene), "double_solid", facts=facts)
+
+
+def _posted(scene: PaperScene) -> float:
+    """What the school's road is posted: the band of 22358.4 needs 30 mph or less."""
+    return MPH_30 if scene.school == "band" else MPH_35
 
 
 def _junction(scene: PaperScene) -> JunctionSpec:
@@ -173,16 +179,16 @@ def _signs(scene: PaperScene) -> tuple[SignSpec, ...]:
     if _has_junction(scene) and scene.no_turn_sign:
         signs.append(SignSpec("no_turn", "R10-11", "first", FIRST[scene.part] - 2.0))
     if SCHOOL_ROAD[scene.part] > ZONE[1]:
-        posted = ("30", MPH_30) if scene.school == "band" else ("35", MPH_35)
-        signs.append(SignSpec("school_posted", "R2-1", "school", 20.0, values=(posted[0],), speed=posted[1]))
-        if scene.school != "no_sign":
+        shown = "30" if scene.school == "band" else "35"
+        signs.append(SignSpec("school_posted", "R2-1", "school", 20.0, values=(shown,), speed=_posted(scene)))
+        if "sign.school" in _READ[scene.school]:
             signs.append(SignSpec("school_sign", "S1-1", "school", ZONE[0]))
     return tuple(signs)
 
 
 def _ego(scene: PaperScene) -> EgoSpec:
     lane = "school.s.1" if scene.part == "school" else "first.e.1"
-    return EgoSpec(lane, 10.0, MPH_35, ("right",) if _has_junction(scene) else ())
+    return EgoSpec(lane, 10.0, _posted(scene) if scene.part == "school" else MPH_35, ("right",) if _has_junction(scene) else ())
 
 
 def _cyclists(scene: PaperScene) -> tuple[CyclistSpec, ...]:
@@ -196,12 +202,13 @@ def _vehicles(scene: PaperScene) -> tuple[VehicleSpec, ...]:
     """People on the road: one who comes up on the left as the cyclist is met, oncoming traffic, and who crosses while the light is red."""
     found = []
     if scene.part in ("whole", "cyclist"):
-        if scene.lanes > 1:
+        if scene.lanes > 1 and scene.beside:
             found.append(VehicleSpec("beside", "first.e.2", 2.0, MPH_35, wish=MPH_35 + 1.0))
         found += [VehicleSpec(f"oncoming_{n}", f"first.w.{scene.lanes}", 20.0 + 90.0 * n, 14.0) for n in range(2)]
     if _has_junction(scene):
         first = 24.0 if scene.part == "whole" else 6.0
-        times = [first + 4.5 * n for n in range(8 if scene.cross_traffic else 2)]
+        count = 8 if scene.cross_traffic else 0 if scene.pedestrian else 2
+        times = [first + 4.5 * n for n in range(count)]
         found += [VehicleSpec(f"crossing_{n}", "north.s.1", 5.0, 13.0, turns=("straight",), enters=time) for n, time in enumerate(times)]
     return tuple(found)
 
@@ -213,12 +220,12 @@ def _flows(scene: PaperScene) -> tuple[FlowSpec, ...]:
 
 
 def _pedestrians(scene: PaperScene) -> tuple[PedestrianSpec, ...]:
-    """One who waits at the kerb of the arm the ego turns across, and walks over it as the ego has come to stand."""
+    """One who waits at the kerb of the arm the ego turns into, and walks over it as the ego comes to stand, 18 m away."""
     if not (_has_junction(scene) and scene.pedestrian):
         return ()
     across = HALF + 3.5 + 2.0
     y = -HALF + 2.0
-    return (PedestrianSpec("walker", ((2 * HALF - across, y), (across, y)), 1.3, when_near=25.0),)
+    return (PedestrianSpec("walker", ((2 * HALF - across, y), (across, y)), 1.3, when_near=18.6),)
 
 
 def _sightings(scene: PaperScene) -> tuple[SightingSpec, ...]:

@@ -45,6 +45,7 @@ _WHOLE = PaperScene()
 _CYCLIST = PaperScene(part="cyclist")
 _RED = PaperScene(part="red")
 _SCHOOL = PaperScene(part="school")
+_WIDE = replace(_CYCLIST, width=4.6, beside=False)
 _ONE_LANE = replace(_CYCLIST, lanes=1)
 _2022, _2023, _2031 = "2022-12-30T07:40:00", "2023-01-02T07:40:00", "2031-02-03T07:40:00"
 
@@ -57,10 +58,10 @@ VARIANTS: tuple[Variant, ...] = (
         (*OVERTAKES, *TURNS_ON_RED, *SLOWS), ("CVC 21760(c)", "CVC 21453(a)", "CVC 21453(b)", "CVC 22352(b)(2)"), 25 * _MPH, "next_lane", "red",
     )),
     Variant("cyclist", _CYCLIST, Expectation("passes from the second lane and comes back", OVERTAKES, ("CVC 21760(c)",), passes="next_lane")),
-    Variant("cyclist-2022", replace(_CYCLIST, start=_2022), Expectation(
+    Variant("cyclist-2022", replace(_WIDE, start=_2022), Expectation(
         "may pass within the lane, at three feet or more: the older text of 21760", OVERTAKES, ("CVC 21760(c)",), passes="same_lane",
     )),
-    Variant("cyclist-2023", replace(_CYCLIST, start=_2023), Expectation(
+    Variant("cyclist-2023", replace(_WIDE, start=_2023), Expectation(
         "must change lanes to pass: 21760(c) as of 2023-01-01", OVERTAKES, ("CVC 21760(c)",), passes="next_lane",
     )),
     Variant("solid-line", replace(_CYCLIST, divider="double_solid", width=3.4), Expectation(
