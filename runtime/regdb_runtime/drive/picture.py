@@ -55,7 +55,7 @@ def draw_scene(
     path: Path, road_map: RoadMap, instant: Instant, *, title: str = "", caption: str = "", settings: PictureSettings | None = None
 ) -> None:
     """Write a picture (PNG, SVG or PDF by the path's suffix). Raises MissingExtra without matplotlib."""
-    figure_class, canvas = _matplotlib()
+    figure_class, canvas, rc_context = _matplotlib()
     view = settings or PictureSettings()
     shape = _shape(instant.observation, view)
     width, bar = view.pixels / 100, 0.55
@@ -65,7 +65,8 @@ def draw_scene(
     paint_scene(figure.add_axes((0.0, 0.0, 1.0, top)), road_map, instant, settings=view)
     figure.text(0.012, (1.0 + top) / 2, title, fontsize=15, fontweight="bold", va="center", color="#1c1f23")
     figure.text(0.988, (1.0 + top) / 2, caption or _caption(instant.observation), fontsize=12, va="center", ha="right", color="#4a4f57")
-    figure.savefig(path, metadata=_without_date(path))
+    with rc_context({"svg.hashsalt": "regdb"}):
+        figure.savefig(path, metadata=_without_date(path))
 
 
 def paint_scene(axes: Axes, road_map: RoadMap, instant: Instant, *, scale: float = 1.0, settings: PictureSettings | None = None) -> None:
@@ -90,13 +91,14 @@ def _shape(observation: Observation, view: PictureSettings) -> tuple[float, floa
     return view.across * 1.25, view.along * 0.8
 
 
-def _matplotlib() -> tuple[Callable[..., Any], Callable[..., Any]]:
+def _matplotlib() -> tuple[Callable[..., Any], Callable[..., Any], Callable[..., Any]]:
     try:
+        from matplotlib import rc_context
         from matplotlib.backends.backend_agg import FigureCanvasAgg
         from matplotlib.figure import Figure
     except ImportError:
         raise MissingExtra("matplotlib", "plots", "a picture of a scene") from None
-    return Figure, FigureCanvasAgg
+    return Figure, FigureCanvasAgg, rc_context
 
 
 def _without_date(path: Path) -> dict[str, None]:

@@ -61,7 +61,7 @@ def build_road_map(spec: StreetsSpec, vocabulary: Vocabulary) -> RoadMap:
         build_sign(streets, sign)
     zones = tuple(build_zone(streets, zone) for zone in spec.zones)
     quiet = {name: value for name, value in quiet_facts(vocabulary).items() if vocabulary.facts[name].source == "map"}
-    facts = quiet | surveyed_facts(vocabulary) | streets.read(spec.facts, "streets")
+    facts = quiet | dict(surveyed_facts(vocabulary)) | streets.read(spec.facts, "streets")
     return RoadMap(streets.lanes, lights, streets.signs, zones, crosswalks, None, facts, spec.jurisdiction, "built-in")
 
 

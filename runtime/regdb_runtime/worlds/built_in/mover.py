@@ -16,7 +16,9 @@ class TrafficSettings:
 
     `scatter`: standard deviation of wished speed over the limit (free-flow surveys: about a tenth), at most `most_scatter`. `gap`: time to
     spare when giving way (HCM critical headways: 4-7 s, less the crossing's own time). `stop_short`: front from the limit line when standing.
-    `stand`: time at a stop line before going on. `beside_bicycle`, `beside_parked`: clearance kept when passing. `lateral`: sideways speed.
+    `stand`: time at a stop line before going on. `patience`: how long somebody who does not go is waited for; by `impatient_after` no time
+    is to spare any more. `beside_bicycle`, `beside_parked`: clearance kept when passing. `lateral`: sideways speed. `looks_ahead`: seconds
+    at which a walking pedestrian's place is kept clear.
     """
 
     scatter: float = 0.07
@@ -29,10 +31,12 @@ class TrafficSettings:
     stop_short: float = 0.7
     stand: float = 1.2
     patience: float = 5.0
+    impatient_after: float = 20.0
     beside_bicycle: float = 1.05
     beside_parked: float = 0.7
     lateral: float = 0.9
     right_on_red: bool = True
+    looks_ahead: tuple[float, ...] = (0.0, 1.2, 2.4)
 
 
 class Mover:
@@ -40,7 +44,7 @@ class Mover:
 
     __slots__ = (
         "acceleration", "bicycle", "enters", "gone", "half_length", "half_width", "hazard_kind", "id", "idm", "kind", "leaves_at", "length",
-        "offset", "place", "resting_offset", "route", "scattered", "speed", "speeds", "station", "stood", "table", "tables",
+        "offset", "place", "resting_offset", "route", "scattered", "speed", "speeds", "station", "stood", "stopped", "table", "tables",
         "waiting_since", "warning_lights", "weave", "width", "wish",
     )  # fmt: skip
 
@@ -64,6 +68,7 @@ class Mover:
         self.leaves_at: float | None = None
         self.weave = 0.0
         self.stood = 0.0
+        self.stopped = False
         self.waiting_since: float | None = None
         self.warning_lights, self.hazard_kind = "none", "none"
         self.gone = False
@@ -96,6 +101,7 @@ class Mover:
                 return
             self.station -= self.table.length
             self.place += 1
+            self.stopped, self.waiting_since = False, None
             before_half = self.table.half_width
             self.table = self.tables[following]
             if self.bicycle:

@@ -3,10 +3,14 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from itertools import pairwise
 
 from regdb_runtime.observation import Track
 from regdb_runtime.worlds.scene_spec import PedestrianSpec
+
+ARM = 0.6
+"""How far before others a pedestrian stops, metres."""
 
 
 class Pedestrian:
@@ -23,15 +27,27 @@ class Pedestrian:
     def moving(self) -> bool:
         return self.walking and bool(self._legs) and (self.spec.back_and_forth or self.walked < self.length)
 
-    def step(self, time: float, duration: float, ego_front: tuple[float, float]) -> None:
-        """Walk on from `time` for `duration` seconds."""
+    def step(self, time: float, duration: float, ego_front: tuple[float, float], in_the_way: Sequence[Track] = ()) -> None:
+        """Walk on from `time` for `duration` seconds; nobody walks into what stands or drives right ahead."""
         near = self.spec.when_near is None or math.dist(ego_front, self.spec.path[0]) <= self.spec.when_near
         if not self.walking and time >= self.spec.starts - 1e-9 and near:
             self.walking = True
-        if self.walking:
+        if self.walking and not self._blocked(in_the_way):
             self.walked += self.spec.speed * duration
             if not self.spec.back_and_forth:
                 self.walked = min(self.walked, self.length)
+
+    def _blocked(self, others: Sequence[Track]) -> bool:
+        x, y, heading = self.place()
+        ahead_x, ahead_y = x + ARM * math.cos(heading), y + ARM * math.sin(heading)
+        for other in others:
+            if abs(other.x - x) + abs(other.y - y) < 20.0:
+                dx, dy = ahead_x - other.x, ahead_y - other.y
+                cos, sin = math.cos(other.heading), math.sin(other.heading)
+                reach = self.spec.size / 2
+                if abs(cos * dx + sin * dy) < other.length / 2 + reach and abs(cos * dy - sin * dx) < other.width / 2 + reach:
+                    return True
+        return False
 
     def place(self) -> tuple[float, float, float]:
         """(x, y, heading) now."""

@@ -111,36 +111,42 @@ class RightOfWay:
         if color == "yellow":
             return mover.speed * mover.speed / (2 * max(distance, 0.1)) < self.settings.hardest
         turns_on_red = self.settings.right_on_red and lane.turn == "right" and not self.signals.is_arrow(governing) and not mover.bicycle
-        return not (turns_on_red and mover.stood >= self.settings.stand)
+        return not (turns_on_red and mover.stopped)
 
     def sign_stops(self, mover: Mover, lane: LaneTable) -> bool:
         """Whether a STOP sign still asks for a full stop."""
-        return lane.control in ("stop_ego", "stop_all") and mover.stood < self.settings.stand
+        return lane.control in ("stop_ego", "stop_all") and not mover.stopped
 
     def clear(
         self, mover: Mover, lane: LaneTable, time: float, distance: float, coming: Mapping[str, list[Approaching]],
         occupied: Mapping[str, list[float]],
     ) -> bool:  # fmt: skip
         """Whether the way is neither taken, nor occupied, nor about to be used by somebody who goes first."""
-        after = _time_to(distance + lane.length + mover.length, mover.speed, mover.idm.acceleration, lane.curve_speed)
         for conflict in self.conflicts[lane.id]:
-            holders = self.taken.get(conflict.other)
-            if holders and any(name != mover.id for name in holders):
+            if any(item is not mover and not _past(item, conflict) for item in self.taken.get(conflict.other, {}).values()):
                 return False
             if any(station < conflict.other_end for station in occupied.get(conflict.other, ())):
                 return False
-            if any(self._goes_first(item, conflict, mover, lane, time, after) for item in coming.get(conflict.other, ())):
+            if any(self._goes_first(item, conflict, mover, lane, time, distance) for item in coming.get(conflict.other, ())):
                 return False
         return True
 
-    def _goes_first(self, other: Approaching, conflict: Conflict, mover: Mover, lane: LaneTable, time: float, after: float) -> bool:
+    def _goes_first(self, other: Approaching, conflict: Conflict, mover: Mover, lane: LaneTable, time: float, distance: float) -> bool:
         theirs = self.tables[conflict.other]
         if other.name == mover.id or not self._has_priority(theirs, lane, time, mover, other):
+            return False
+        waiting = 0.0 if other.since is None else time - other.since
+        if lane.control in ("none", "stop_all") and mover.waiting_since is None and waiting > self.settings.impatient_after / 2:
+            return other.name != mover.id
+        if other.speed < 0.3 and waiting > self.settings.patience:
             return False
         if lane.control == "stop_all":
             return True
         arrival = (max(other.distance, 0.0) + conflict.other_begin) / max(other.speed, 3.0)
-        return arrival < after + self.settings.gap and other.distance < self.settings.sight
+        waited = 0.0 if mover.waiting_since is None else time - mover.waiting_since
+        spare = self.settings.gap * max(0.0, 1.0 - waited / self.settings.impatient_after)
+        after = _time_to(distance + conflict.end + mover.length, mover.speed, mover.idm.acceleration, lane.curve_speed)
+        return arrival < after + spare and other.distance < self.settings.sight
 
     def _has_priority(self, theirs: LaneTable, own: LaneTable, time: float, mover: Mover, other: Approaching) -> bool:
         """Whether the other way goes before one's own: green before red, main road before side road, straight before left, first come at ALL WAY."""
@@ -164,6 +170,11 @@ class RightOfWay:
         if other.since is None or time - other.since > self.settings.patience:
             return False
         return mover.waiting_since is None or (other.since, other.name) < (mover.waiting_since, mover.id)
+
+
+def _past(mover: Mover, conflict: Conflict) -> bool:
+    """Whether a vehicle's rear has left the place where its way touches another."""
+    return mover.table.id == conflict.other and mover.station - mover.half_length > conflict.other_end
 
 
 def _from_right(own: LaneTable, theirs: LaneTable) -> bool:

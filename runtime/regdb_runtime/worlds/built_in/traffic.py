@@ -98,7 +98,9 @@ class Traffic:
         self._enter_loose(x, y, ego.heading, footprint.length, footprint.width, ego.speed, "")
         for person in people:
             px, py, heading = person.place()
-            self._enter_loose(px, py, heading, person.spec.size, person.spec.size, 0.0, "person")
+            for ahead in self.settings.looks_ahead if person.moving else (0.0,):
+                reach, size = ahead * person.spec.speed, person.spec.size
+                self._enter_loose(px + reach * math.cos(heading), py + reach * math.sin(heading), heading, size, size, 0.0, "person")
         for items in entries.values():
             items.sort(key=_by_station)
 
@@ -135,13 +137,16 @@ class Traffic:
         return found
 
     def _coming(self, ahead: EgoAhead, ego_speed: float) -> dict[str, list[Approaching]]:
-        """Who is on the way to which junction lane and has not taken it yet."""
+        """Who is on the way to which junction lane; whoever queues behind somebody who stands is not."""
         found: dict[str, list[Approaching]] = {}
-        for mover in self.movers:
+        blocked: set[str] = set()
+        for mover in sorted(self.movers, key=_from_front):
             following = mover.following_lane
             if following is not None and mover.table.junction is None and self.tables[following].inner:
                 distance = mover.table.length - mover.station - mover.half_length
-                if distance < 150.0:
+                if distance < 150.0 and mover.table.id not in blocked:
+                    if mover.speed < 1.0:
+                        blocked.add(mover.table.id)
                     found.setdefault(following, []).append(Approaching(mover.id, following, distance, mover.speed, mover.waiting_since))
         if ahead.lane is not None:
             found.setdefault(ahead.lane, []).append(Approaching("", ahead.lane, ahead.distance, ego_speed, ahead.since))
@@ -211,6 +216,8 @@ class Traffic:
             return None
         if distance < 4.0 and mover.speed < 0.3 and mover.waiting_since is None:
             mover.waiting_since = time
+        if distance < 4.0 and mover.stood >= self.settings.stand:
+            mover.stopped = True
         stopped = way.light_stops(mover, lane, time, distance) or way.sign_stops(mover, lane)
         if way.holds(mover, following):
             can_stop = mover.speed * mover.speed / (2 * max(distance, 0.1)) < self.settings.comfortable
@@ -223,7 +230,6 @@ class Traffic:
             return None if way.clear(mover, lane, time, distance, coming, occupied) else distance
         if self._room_beyond(mover, lane) and way.clear(mover, lane, time, distance, coming, occupied):
             way.take(mover, following)
-            mover.waiting_since = None
             return None
         return distance
 
@@ -277,6 +283,10 @@ class Traffic:
         here = other.length - mover.station
         reach = 8.0 * (mover.speed + other.limit)
         return all(not -10.0 < here - item.station < reach for item in self._entries.get(other.id, ()))
+
+
+def _from_front(mover: Mover) -> float:
+    return mover.table.length - mover.station
 
 
 def _by_station(entry: Entry) -> float:

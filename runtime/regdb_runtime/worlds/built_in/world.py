@@ -104,11 +104,19 @@ class BuiltInWorld:
         for flow in self._flows:
             flow.step(self.time, self._traffic)
         self._traffic.step(self.time, duration, self.ego, self.footprint, self._ego_ahead(), self._people)
-        for person in self._people:
-            person.step(self.time, duration, self.ego.front_bumper(self.footprint))
+        self._walk(duration)
         self.ego = move_ego(self.ego, plan, turn_signal, duration, self.footprint, self._ego_settings)
         self.time = after
         self._note_contacts()
+
+    def _walk(self, duration: float) -> None:
+        if not self._people:
+            return
+        x, y = self.ego.box_center(self.footprint)
+        own = Track("", "car", x, y, self.ego.heading, self.ego.speed, self.footprint.length, self.footprint.width)
+        others = (*self._traffic.tracks(self.time), *self._parked, own)
+        for person in self._people:
+            person.step(self.time, duration, self.ego.front_bumper(self.footprint), others)
 
     def _note_contacts(self) -> None:
         found = find_contacts(self.time, self.ego, self.footprint, self.tracks())
