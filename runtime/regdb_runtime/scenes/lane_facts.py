@@ -72,9 +72,10 @@ def lane_facts(road_map: RoadMap, lane: Lane) -> dict[str, Value]:
 
 def _position(traffic: list[Lane], lane: Lane) -> dict[str, Value]:
     """Where in the row of lanes for traffic (left to right) the lane lies."""
-    if lane not in traffic:
+    names = [item.id for item in traffic]
+    if lane.id not in names:
         return {"ego.lane_position": "bicycle_lane"} if "bicycle_lane" in lane.kinds else {}
-    place = traffic.index(lane)
+    place = names.index(lane.id)
     words = {0: "leftmost", len(traffic) - 1: "rightmost"} if len(traffic) > 1 else {0: "only"}
     word = words.get(place, "middle")
     return {"ego.lane_position": word, "ego.lane_from_right": float(len(traffic) - place)}
