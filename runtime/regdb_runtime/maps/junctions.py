@@ -203,13 +203,13 @@ def side_by_side(lanes: Mapping[str, Lane], lane: str) -> tuple[str, ...]:
 def crossing_pairs(lanes: Mapping[str, Lane], among: Iterable[str], settings: JunctionSettings) -> list[tuple[str, str]]:
     """Pairs of lanes that cross each other."""
     names = [name for name in among if not lanes[name].kinds & {"crosswalk", "sidewalk"}]
-    boxes = {name: np.concatenate((lanes[name].center.min(axis=0), lanes[name].center.max(axis=0))) for name in names}
+    boxes = np.array([(*lanes[name].center.min(axis=0), *lanes[name].center.max(axis=0)) for name in names]).reshape(-1, 4)
     pairs = []
     for place, first in enumerate(names):
-        for second in names[place + 1 :]:
-            a, b = boxes[first], boxes[second]
-            if (a[:2] <= b[2:]).all() and (b[:2] <= a[2:]).all() and _cross(lanes[first], lanes[second], settings):
-                pairs.append((first, second))
+        low, high, later = boxes[place, :2], boxes[place, 2:], boxes[place + 1 :]
+        near = (later[:, :2] <= high).all(axis=1) & (later[:, 2:] >= low).all(axis=1)
+        seconds = (names[place + 1 + row] for row in np.flatnonzero(near))
+        pairs += [(first, second) for second in seconds if _cross(lanes[first], lanes[second], settings)]
     return pairs
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from dataclasses import dataclass
 from itertools import groupby
 
@@ -57,13 +57,14 @@ def read_links(root: XmlNode, functions: Mapping[str, str], known: set[str]) -> 
     return links
 
 
-def control_of(way: Link, links: list[Link]) -> Control:
-    """How a connection's entry is regulated. A minor connection from a road whose others have priority only gives way to oncoming traffic."""
+def control_of(way: Link, major: Collection[str]) -> Control:
+    """How a connection's entry is regulated. A minor connection of a `major` edge, one whose others have priority, only gives way to oncoming
+    traffic."""
     if way.signal:
         return "signal"
     if way.state != "m":
         return CONTROLS.get(way.state, "unknown")
-    return "none" if any(link.edge == way.edge and link.state == "M" for link in links) else "yield"
+    return "none" if way.edge in major else "yield"
 
 
 def read_signals(

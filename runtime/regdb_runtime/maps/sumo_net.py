@@ -144,24 +144,31 @@ def _with_junctions(
 
     A node without a signal that has less than three arms, or where all only merge or fork, is none.
     """
+    major = frozenset(link.edge for link in links if link.state == "M")
     entered = {link.via: link for link in links if link.via is not None and edges[link.edge].function == "normal"}
+    within: dict[str, list[str]] = {}
+    into: dict[str, list[_Edge]] = {}
+    out_of: dict[str, list[_Edge]] = {}
+    for edge in edges.values():
+        if edge.function == "internal":
+            within.setdefault(edge.id[1:].rpartition("_")[0], []).extend(_names(edge))
+        into.setdefault(edge.end, []).append(edge)
+        out_of.setdefault(edge.start, []).append(edge)
     found, junctions = dict(lanes), {}
     for node in root.all("junction"):
         name = node.attribute("id")
         if node.element.get("type") in ("internal", "dead_end"):
             continue
-        inner = [lane for edge in edges.values() if edge.function == "internal" and edge.id[1:].rpartition("_")[0] == name for lane in _names(edge)]
+        inner = within.get(name, [])
         ways = [entered[lane] for lane in inner if lane in entered]
-        arms = {edge.start for edge in edges.values() if edge.end == name} | {edge.end for edge in edges.values() if edge.start == name}
+        arms = {edge.start for edge in into.get(name, [])} | {edge.end for edge in out_of.get(name, [])}
         if not any(way.signal for way in ways) and (len(arms) < 3 or all(way.direction == "s" for way in ways)):
             continue
         for lane in inner:
             way = _entry(lane, lanes, entered)
             if way is not None:
-                found[lane] = replace(lanes[lane], junction=name, turn=TURNS.get(way.direction, "straight"), control=control_of(way, links))
-        approaches = tuple(
-            Approach(edge.id, _names(edge)) for edge in edges.values() if edge.end == name and any(way.edge == edge.id for way in ways)
-        )
+                found[lane] = replace(lanes[lane], junction=name, turn=TURNS.get(way.direction, "straight"), control=control_of(way, major))
+        approaches = tuple(Approach(edge.id, _names(edge)) for edge in into.get(name, []) if any(way.edge == edge.id for way in ways))
         junctions[name] = RoadJunction(name, tuple(lane for lane in inner if found[lane].junction), approaches)
     return found, junctions
 
