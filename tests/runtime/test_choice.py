@@ -1,7 +1,9 @@
 """The choice: no weight buys a breach, the order of candidates does not matter, and the lesser breach is told by duties."""
 
 import math
+import re
 from dataclasses import dataclass
+from pathlib import Path
 
 import pytest
 from hypothesis import given
@@ -172,3 +174,9 @@ def test_a_verdict_of_the_shipped_law_is_measured(speed: float, beyond: float) -
     found = violations(verdict)
     assert found[place("speed")] == pytest.approx(beyond)
     assert sum(found) == found[place("speed")]
+
+
+def test_the_documentation_lists_the_duties_in_their_order() -> None:
+    page = Path(__file__).parents[2] / "docs" / "explanation" / "costs-and-choice.md"
+    listed = re.findall(r"^\d+\. (.+)$", page.read_text(encoding="utf-8"), re.MULTILINE)
+    assert listed == [*(duty.name for duty in DUTIES), "everything else"]

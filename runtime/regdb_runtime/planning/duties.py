@@ -40,7 +40,7 @@ DUTIES: tuple[Duty, ...] = (
     Duty("persons on bicycles and at work", _topics(
         "passing-bicycle turn-across-bicycle-lane bicycle-lane pass-animals pass-waste-service fire-hose"
     ), _topics("min_clearance")),
-    Duty("tracks", _topics("rail-crossing-stop rail-crossing-stop-classes rail-stop-sign rail-stop-classes")),
+    Duty("rail tracks", _topics("rail-crossing-stop rail-crossing-stop-classes rail-stop-sign rail-stop-classes")),
     Duty("signals and stops", _topics(
         "red-signal signal-stop stop-sign flashing-signal signal-not-at-intersection lane-control-signal green-signal obey-signals "
         "obey-officers obey-traffic-directors alley-stop"
