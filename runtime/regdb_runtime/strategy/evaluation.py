@@ -7,10 +7,11 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from regdb.vocabulary import Value
 from regdb_runtime.assessment.assessor import Assessor
 from regdb_runtime.decision import CandidateReport, Rejection
 from regdb_runtime.maneuver import Maneuver
-from regdb_runtime.observation import EgoState, Footprint, Observation
+from regdb_runtime.observation import EgoState, Footprint, Observation, TurnSignal
 from regdb_runtime.planning.contacts import Sweeper
 from regdb_runtime.planning.cost import MotionCosts, motion_cost, weigh
 from regdb_runtime.planning.cost_settings import CostSettings
@@ -24,8 +25,10 @@ from regdb_runtime.scenes.history import History
 from regdb_runtime.scenes.stretches import Scenes
 from regdb_runtime.trajectory import Candidates
 
-NO_PLAN = 3
-"""Rank of a candidate without a plan."""
+UNLAWFUL, NO_PLAN = 2, 3
+"""Ranks of a candidate whose best plan breaks the law, and of one without a plan."""
+LONG = 1000.0
+"""Metres or seconds of signalling beyond what any law asks."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -58,7 +61,19 @@ class Evaluator:
         """The best plan of a manoeuvre from `start` on, with the law's verdict on it."""
         if maneuver.refused:
             return Evaluated(maneuver, _without_plan(maneuver, (Rejection(maneuver.refused),)))
+        if maneuver.prepares is not None and not maneuver.prepares.refused:
+            prepared = self._evaluate(maneuver.prepares, start, observation, history, predictions, sweeper, wanted_speed, signalled=True)
+            if prepared.report.rank == UNLAWFUL:
+                return Evaluated(maneuver, _without_plan(maneuver, (Rejection(f"prepares:{maneuver.prepares.next}"), *prepared.report.rejections)))
+        return self._evaluate(maneuver, start, observation, history, predictions, sweeper, wanted_speed)
+
+    def _evaluate(
+        self, maneuver: Maneuver, start: EgoState, observation: Observation, history: History, predictions: Predictions,
+        sweeper: Sweeper, wanted_speed: float, signalled: bool = False,
+    ) -> Evaluated:  # fmt: skip
         stretches = self.scenes.stretches(observation, maneuver, history)
+        if signalled:
+            stretches = tuple(replace(item, roles={**item.roles, **_signalled(maneuver.turn_signal)}) for item in stretches)
         caps = self.assessor.caps(maneuver, stretches)
         maneuver = replace(maneuver, goal=replace(maneuver.goal, caps=(*maneuver.goal.caps, *caps)))
         path = maneuver.lane_path.path
@@ -73,9 +88,11 @@ class Evaluator:
         rejections = (*_infeasible(feasible.counts), *assessed.rejections)
         if assessed.index is None:
             return Evaluated(maneuver, _without_plan(maneuver, rejections, len(candidates)), caps)
-        added = sum(amount for _, amount in maneuver.biases)
-        cost = weigh(costs, assessed.index, assessed.rank, added)
-        cost = replace(cost, parts={**cost.parts, **dict(maneuver.biases)})
+        added = dict(maneuver.biases)
+        if maneuver.credit is not None:
+            added["credit"] = min(maneuver.credit - float(costs.distance[assessed.index]), 0.0)
+        cost = weigh(costs, assessed.index, assessed.rank, sum(added.values()))
+        cost = replace(cost, parts={**cost.parts, **added})
         report = CandidateReport(
             maneuver.current, maneuver.next, assessed.rank, cost, assessed.verdict, candidates.one(assessed.index), maneuver.turn_signal,
             len(stretches), len(candidates), rejections,
@@ -94,6 +111,11 @@ def failed(maneuver: Maneuver, error: Exception) -> Evaluated:
     """A candidate whose evaluation raised: it falls out, and says so."""
     reason = Rejection("error", because=f"{type(error).__name__}: {error}")
     return Evaluated(maneuver, _without_plan(maneuver, (reason,)))
+
+
+def _signalled(side: TurnSignal) -> dict[str, Value]:
+    """The facts of history as they will be once a movement has been signalled for as long as any law asks."""
+    return {"ego.turn_signal": side, "ego.signalled_distance": LONG, "ego.signalled_time": LONG}
 
 
 def _without_plan(maneuver: Maneuver, rejections: Sequence[Rejection], sampled: int = 0) -> CandidateReport:

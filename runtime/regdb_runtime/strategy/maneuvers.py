@@ -52,15 +52,15 @@ class Strategist:
     settings: StrategySettings
     paths: Paths
 
-    def picture(self, observation: Observation, memory: Memory, free_speed: float) -> Picture:
-        """Where the vehicle is. Raises OffRoad when it is on no lane of the map."""
+    def picture(self, observation: Observation, memory: Memory, free_speed: float | None) -> Picture:
+        """Where the vehicle is; without a `free_speed` the posted one is taken. Raises OffRoad when it is on no lane of its route."""
         ego = observation.ego
         lane, lane_station = self.paths.locate(ego, memory.lane, memory.target_lane)
         path = self.paths.along(lane, lane_station)
         station, offset = self.paths.station(path, ego)
         picture = Picture(
             observation, self.road_map, self.route, self.paths, replace(memory, lane=lane), self.settings, self.footprint, lane, lane_station,
-            path, station, offset, free_speed,
+            path, station, offset, free_speed or self.road_map.lanes[lane].speed_limit or self.settings.cruise_speed,
         )  # fmt: skip
         return replace(picture, memory=self._looked(picture))
 

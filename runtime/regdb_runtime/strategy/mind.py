@@ -56,7 +56,7 @@ class Mind:
         self.strategist, self.evaluator, self.history = strategist, evaluator, history
         self.predictor, self.settings = predictor, settings
         self._times = np.arange(settings.lattice.points, dtype=np.float64) * settings.lattice.step
-        self._free_speed = 0.0
+        self._free_speed: float | None = None
         self._watch = ZoneWatch()
 
     @property
@@ -67,8 +67,6 @@ class Mind:
     def think(self, observation: Observation, memory: Memory, start: EgoState, strategic: bool) -> Thought:
         """One tick: among all states that may follow, or in the state in force alone; if that has no lawful plan, among all after all."""
         picture = self.strategist.picture(observation, memory, self._free_speed)
-        if self._free_speed == 0.0:
-            self._free_speed = picture.here.speed_limit or self.settings.strategy.cruise_speed
         self.history.update(observation, picture.lane_path, picture.junction)
         predictions = self.predictor.predict(self._mattering(picture), self._times)
         if not strategic:
@@ -86,7 +84,7 @@ class Mind:
         for maneuver in maneuvers:
             try:
                 found.append(
-                    self.evaluator.evaluate(maneuver, start, picture.observation, self.history, predictions, sweeper, self._free_speed)
+                    self.evaluator.evaluate(maneuver, start, picture.observation, self.history, predictions, sweeper, picture.free_speed)
                 )
             except Exception as error:  # noqa: BLE001  # fails closed: no plan of this candidate
                 found.append(failed(maneuver, error))

@@ -73,7 +73,9 @@ def prepare_left(picture: Picture, step: Step) -> Maneuver:
     slow, refused = _by_lane(picture)
     if slow is None:
         return refuse(picture, step, refused)
-    return keep_lane(picture, step, follow(picture.lead), "left", biases=_promise(picture, slow))
+    prepared = change_left(picture, Step(step.next, f"{step.next.partition('.')[0]}.lane_change_left"))
+    found = keep_lane(picture, step, follow(picture.lead), "left")
+    return replace(found, credit=picture.settings.lane_change_cost, prepares=prepared)
 
 
 def change_left(picture: Picture, step: Step) -> Maneuver:
@@ -88,7 +90,7 @@ def change_left(picture: Picture, step: Step) -> Maneuver:
     beside = picture.beside("left")
     if slow is None or beside is None:
         return refuse(picture, step, refused or "no_lane")
-    return into_lane(picture, step, "left", beside, slow.track.id, _promise(picture, slow))
+    return replace(into_lane(picture, step, "left", beside, slow.track.id), credit=picture.settings.lane_change_cost)
 
 
 def prepare_right(picture: Picture, step: Step) -> Maneuver:
@@ -185,9 +187,3 @@ def _free_road(picture: Picture) -> float:
         ends.append(picture.junction.stop_station - picture.front)
     return min(ends)
 
-
-def _promise(picture: Picture, slow: Placed) -> tuple[tuple[str, float], ...]:
-    """What passing will gain, in metres of advance."""
-    settings = picture.settings
-    gain = max(picture.free_speed - max(slow.along, 0.0), 0.0) * settings.promise_time
-    return (("promise", -settings.promise * gain),)

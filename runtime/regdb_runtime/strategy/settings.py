@@ -92,10 +92,8 @@ class StrategySettings:
 
     need_lane: float = 40.0
     """Metres of advance (the unit of all that follows): what a change of lane that the route needs is worth at last; a quarter at first."""
-    promise: float = 0.6
-    """Share of the advance gained over `promise_time` by passing that its preparation is credited with: it drives no faster itself."""
-    promise_time: float = 5.0
-    """Seconds: the sampler's horizon, so that promised and sampled advance compare."""
+    lane_change_cost: float = 2.0
+    """What passing by another lane costs over passing within the lane. Its preparation, no faster than following, is credited with all the rest."""
     move: float = 30.0
     """Making a change of lane rather than going on preparing it: what its offsets cost by the default profile, and a little more."""
     return_to_lane: float = 8.0
