@@ -31,7 +31,9 @@ def test_a_full_stop_at_the_line_counts_until_the_line_is_crossed() -> None:
     assert at(street, LINE + 1.0, 2.0)["ego.stopped_at_line"] is False
 
 
-@pytest.mark.parametrize(("front", "speed", "counts"), [(LINE - 0.5, 0.2, False), (LINE - 0.5, 0.05, True), (LINE - 2.9, 0.0, True), (LINE - 6.0, 0.0, False)])
+@pytest.mark.parametrize(
+    ("front", "speed", "counts"), [(LINE - 0.5, 0.2, False), (LINE - 0.5, 0.05, True), (LINE - 2.9, 0.0, True), (LINE - 6.0, 0.0, False)]
+)
 def test_only_a_stand_near_the_line_is_a_stop_at_it(front: float, speed: float, counts: bool) -> None:
     assert at(corner(), front, speed)["ego.stopped_at_line"] is counts
 
