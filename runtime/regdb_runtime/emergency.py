@@ -131,11 +131,13 @@ def _near(ego: EgoState, tracks: Sequence[Track], footprint: Footprint, settings
     bend = abs(ego.curvature) > STRAIGHT
     center = 1 / ego.curvature if bend else 0.0
     band = math.hypot(abs(center) + outermost, footprint.front) - abs(center) if bend else outermost
+    floor, response, twice = settings.floor, settings.response_time, 2 * settings.assured_braking
     reach = math.hypot(footprint.front, footprint.width / 2 + settings.side_margin)
     found = []
     for track in tracks:
         dx, dy, radius = track.x - ego.x, track.y - ego.y, (track.length + track.width) / 2
-        theirs = settings.required(track.speed)
+        speed = track.speed
+        theirs = max(floor, speed * response + speed * speed / twice)  # settings.required, in line: this runs for everybody about
         farthest = look + radius + theirs
         if dx * dx + dy * dy > farthest * farthest:
             continue
