@@ -40,7 +40,8 @@ def test_straight() -> None:
     assert path.length == pytest.approx(100.0, abs=1e-6)
     s = np.linspace(0, 100, 333)
     assert np.allclose(path.to_plane(s, 2.0), np.column_stack((10 + 0.6 * s - 1.6, 5 + 0.8 * s + 1.2)), atol=1e-6)
-    assert np.allclose(path.heading(s), math.atan2(4, 3)) and np.allclose(path.curvature(s), 0, atol=1e-7)
+    assert np.allclose(path.heading(s), math.atan2(4, 3))
+    assert np.allclose(path.curvature(s), 0, atol=1e-7)
 
 
 @pytest.mark.parametrize("radius", [8.0, -8.0, 60.0])
@@ -78,10 +79,11 @@ def test_arc_length_is_the_parameter() -> None:
 def test_lines_of_maps_get_bounded_curvature_within_the_tolerance() -> None:
     """A right turn of 8 m as maps give it: a few points between two straights; interpolated it would swing to the other side."""
     arc = circle(-8.0, 3.0, math.pi / 2)
-    points = np.vstack(((-60.0, 0.0), arc, arc[-1] + (0.0, -60.0)))
+    points = np.vstack(((-60.0, 0.0), arc, np.add(arc[-1], (0.0, -60.0))))
     path = ReferencePath(points)
     curvature = path.tabulated.curvature
-    assert -0.16 < curvature.min() < -0.11 and curvature.max() < 0.02
+    assert -0.16 < curvature.min() < -0.11
+    assert curvature.max() < 0.02
     assert np.max(np.abs(path.project(points, extend=True)[1])) <= PathSettings().tolerance + 0.01
     plain = ReferencePath(points, EXACT).tabulated.curvature
     assert plain.max() > 0.1
@@ -100,7 +102,8 @@ def test_there_and_back(seed: int, draw: int) -> None:
     path, dice = winding(seed), np.random.default_rng(draw)
     s, d = dice.uniform(0, path.length, 100), dice.uniform(-5, 5, 100)
     back = path.project(path.to_plane(s, d))
-    assert np.allclose(back[0], s, atol=1e-5) and np.allclose(back[1], d, atol=1e-5)
+    assert np.allclose(back[0], s, atol=1e-5)
+    assert np.allclose(back[1], d, atol=1e-5)
 
 
 def test_projection_finds_the_nearest_point() -> None:
@@ -143,11 +146,15 @@ def test_outside_the_domain() -> None:
     for ask in (lambda: path.project([(50.0, 1.0), (-3.0, 1.0)]), lambda: path.to_plane([50.0, -3.0]), lambda: path.heading(-3.0)):
         with pytest.raises(OutsideDomain, match=r"-3\.00") as caught:
             ask()
-        assert caught.value.station == pytest.approx(-3.0) and isinstance(caught.value, RegdbRuntimeError)
+        assert caught.value.station == pytest.approx(-3.0)
+        assert isinstance(caught.value, RegdbRuntimeError)
     station, offset = path.project([(-3.0, 1.0), (104.0, -2.0)], extend=True)
-    assert np.allclose(station, (-3.0, 104.0)) and np.allclose(offset, (1.0, -2.0))
+    assert np.allclose(station, (-3.0, 104.0))
+    assert np.allclose(offset, (1.0, -2.0))
     longer = path.extended(before=5.0, after=10.0)
-    assert longer.start <= -5.0 and longer.end >= 110.0 and longer.length == path.length
+    assert longer.start <= -5.0
+    assert longer.end >= 110.0
+    assert longer.length == path.length
     assert np.allclose(longer.to_plane([-3.0, 104.0], [1.0, -2.0]), [(-3.0, 1.0), (104.0, -2.0)])
     bend = ReferencePath(circle(10.0, 0.5), EXACT)
     with pytest.raises(OutsideDomain, match="centre of curvature") as caught:
@@ -167,10 +174,11 @@ def test_no_path(points: list[tuple[float, ...]]) -> None:
 
 def test_repeated_points_and_far_origins() -> None:
     near = ReferencePath([(0.0, 0.0), (0.0, 0.0), (30.0, 1.0), (30.0, 1.0), (60.0, 0.0)])
-    far = ReferencePath(np.array([(0.0, 0.0), (30.0, 1.0), (60.0, 0.0)]) + (500_000.0, 4_000_000.0))
+    far = ReferencePath(np.add([(0.0, 0.0), (30.0, 1.0), (60.0, 0.0)], (500_000.0, 4_000_000.0)))
     assert near.length == pytest.approx(far.length, abs=1e-6)
     s, d = far.project(far.to_plane([10.0, 50.0], [3.0, -3.0]))
-    assert np.allclose(s, (10.0, 50.0), atol=1e-5) and np.allclose(d, (3.0, -3.0), atol=1e-5)
+    assert np.allclose(s, (10.0, 50.0), atol=1e-5)
+    assert np.allclose(d, (3.0, -3.0), atol=1e-5)
 
 
 def test_the_import_is_light() -> None:

@@ -172,14 +172,14 @@ class ReferencePath:
         return index, np.stack((-2 * x, -2 * y, x * x + y * y)).astype(np.float32), middle
 
     def _project(self, points: Floats, station: Floats, offset: Floats, sharp: Floats) -> None:
-        """Nearest coarse entry, three steps of Newton's from entry to entry, one within the last; writes into the three arrays."""
+        """Nearest coarse entry, two steps of Newton's from entry to entry, two within the last; writes into the three arrays."""
         table = self.tabulated
         coarse, factors, middle = self._coarse
         homogeneous = np.ones((len(points), 3), dtype=np.float32)
         homogeneous[:, :2] = points - middle
         index = coarse[np.argmin(homogeneous @ factors, axis=1)]
         last, px, py = len(table.x) - 1, points[:, 0].copy(), points[:, 1].copy()
-        for _ in range(3):
+        for _ in range(2):
             along, across, bend = self._seen_from(px, py, index)
             move = along / np.maximum(1.0 - bend * across, 0.2)
             index = np.clip(index + np.rint(np.clip(move, -COARSE, COARSE) / table.step).astype(np.intp), 0, last)

@@ -16,16 +16,15 @@ from regdb_runtime.maps.reference_path import ReferencePath
 from regdb_runtime.maps.smoothing import PathTable
 from regdb_runtime.observation import Footprint
 from regdb_runtime.planning.goal import Goal
-from regdb_runtime.planning.polynomials import Floats, quintic
+from regdb_runtime.planning.polynomials import FIRST, SECOND, Floats, quintic
 from regdb_runtime.planning.settings import LatticeSettings
 from regdb_runtime.planning.speed_profiles import speed_profiles
 from regdb_runtime.trajectory import Candidates, FrenetState
 
 SAME_OFFSET = 1e-3
-BLOCK = 4096
-"""Points worked on at a time: a dozen arrays of this size stay in a core's own cache."""
+BLOCK = 65536
+"""Points worked on at a time: fewer, longer steps won over smaller ones that stay nearer to the core."""
 FIELDS = 9
-SCRATCH = 6
 CLOSEST = 0.05
 """Least 1 - curvature * offset that a plan may come to."""
 
@@ -35,7 +34,7 @@ class Workspace:
 
     def __init__(self) -> None:
         self._room = np.empty(0)
-        self.scratch = np.empty((SCRATCH, 0))
+        self._parts = np.empty(0)
 
     def fields(self, plans: int, points: int) -> Floats:
         """Room for `FIELDS` arrays (plans, points)."""
@@ -44,11 +43,12 @@ class Workspace:
             self._room = np.empty(size + size // 4)
         return self._room[:size].reshape(FIELDS, plans, points)
 
-    def parts(self, width: int) -> Floats:
-        """Scratch arrays of a width."""
-        if self.scratch.shape[1] < width:
-            self.scratch = np.empty((SCRATCH, width))
-        return self.scratch[:, :width]
+    def parts(self, changes: int, width: int) -> tuple[Floats, Floats]:
+        """Scratch: offsets (changes, 3, width) and powers (changes, 6, width)."""
+        size = changes * width
+        if self._parts.size < 9 * size:
+            self._parts = np.empty(9 * size)
+        return self._parts[: 3 * size].reshape(changes, 3, width), self._parts[3 * size : 9 * size].reshape(changes, 6, width)
 
 
 @dataclass(frozen=True, eq=False)
@@ -77,14 +77,13 @@ def sample(
     room = workspace.fields(len(sides.lengths) * count, points)
     reach = float(motions[0].max()) if count else start.s
     table = path.tabulated if reach <= path.end else path.extended(after=reach - path.end + 1.0).tabulated
-    whole = room.reshape(FIELDS, -1)
-    rows = max(1, BLOCK // points)
-    for first in range(0, count, rows):
-        station, speed, acceleration = (values[first : first + rows].ravel() for values in motions)
-        along = _Along.of(table, station, speed, acceleration, start.s)
-        for change in range(len(sides.lengths)):
-            begin = (change * count + first) * points
-            _in_plane(along, sides, change, whole[:, begin : begin + len(station)], workspace)
+    changes = len(sides.lengths)
+    whole = room.reshape(FIELDS, changes, count * points)
+    width = points * max(1, BLOCK // (points * changes))
+    flat = [values.ravel() for values in motions]
+    for first in range(0, count * points, width):
+        along = _Along.of(table, *(values[first : first + width] for values in flat), start.s)
+        _in_plane(along, sides, whole[:, :, first : first + width], workspace)
     _jerk(room[4], room[5], settings.step)
     return Candidates(time, *room)
 
@@ -140,17 +139,19 @@ class _Along:
         )  # fmt: skip
 
 
-def _in_plane(along: _Along, sides: _Sides, change: int, out: Floats, workspace: Workspace) -> None:
-    """Writes x, y, heading, speed, acceleration, (jerk), curvature, station, offset (9, k) of a block of motions with one change of offset."""
+def _in_plane(along: _Along, sides: _Sides, out: Floats, workspace: Workspace) -> None:
+    """Writes x, y, heading, speed, acceleration, (jerk), curvature, station, offset (9, q, k) of a block of motions with each change."""
     x, y, heading, speed, acceleration, _, curvature, station, d = out
     station[:] = along.station
-    pieces = sides.pieces[change]
-    if not pieces.any():
+    if not sides.pieces.any():
         x[:], y[:], heading[:], speed[:], acceleration[:] = along.x, along.y, along.heading, along.speed, along.acceleration
         curvature[:], d[:] = along.curvature, 0.0
         return
-    slope, bend, scale, stretch, square, work = workspace.parts(len(x))
-    _offsets(along.way, pieces, float(sides.lengths[change]), (d, slope, bend), work)
+    offsets, powers = workspace.parts(*x.shape)
+    _offsets(along.way, sides, offsets, powers)
+    slope, bend = offsets[:, 1], offsets[:, 2]
+    scale, stretch, square, work = (powers[:, row] for row in range(4))
+    d[:] = offsets[:, 0]
     np.multiply(d, along.sin, out=work)
     np.subtract(along.x, work, out=x)
     np.multiply(d, along.cos, out=work)
@@ -185,19 +186,22 @@ def _in_plane(along: _Along, sides: _Sides, change: int, out: Floats, workspace:
         curvature[scale < CLOSEST] = np.inf  # at the centre of the path's curvature or beyond it: nothing can drive there
 
 
-def _offsets(way: Floats, pieces: Floats, length: float, out: tuple[Floats, Floats, Floats], part: Floats) -> None:
-    """Offset and its first and second derivative by station (k,), held after the end of the change."""
-    np.multiply(way, 1.0 / length, out=part)
+def _offsets(way: Floats, sides: _Sides, out: Floats, powers: Floats) -> None:
+    """Offset and its first and second derivative by station (q, 3, k), held after the end of the change; `powers` is room for (q, 6, k)."""
+    lengths = sides.lengths[:, None]
+    powers[:, 0] = 1.0
+    part, square, cube = powers[:, 1], powers[:, 2], powers[:, 3]
+    np.multiply(way, 1.0 / lengths, out=part)
     np.minimum(part, 1.0, out=part)
-    c = pieces.tolist()
-    first = [power * c[power] / length for power in range(1, 6)]
-    second = [power * (power - 1) * c[power] / length**2 for power in range(2, 6)]
-    for values, factors in zip(out, (c, first, second), strict=True):
-        np.multiply(part, factors[-1], out=values)
-        for factor in factors[-2:0:-1]:
-            values += factor
-            values *= part
-        values += factors[0]
+    np.multiply(part, part, out=square)
+    np.multiply(square, part, out=cube)
+    np.multiply(square, square, out=powers[:, 4])
+    np.multiply(square, cube, out=powers[:, 5])
+    factors = np.zeros((len(lengths), 3, 6))
+    factors[:, 0] = sides.pieces
+    factors[:, 1, :5] = FIRST * sides.pieces[:, 1:] / lengths
+    factors[:, 2, :4] = SECOND * sides.pieces[:, 2:] / lengths**2
+    np.matmul(factors, powers, out=out)
 
 
 def _jerk(acceleration: Floats, jerk: Floats, step: float) -> None:

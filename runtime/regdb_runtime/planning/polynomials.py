@@ -8,6 +8,8 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 Floats = NDArray[np.float64]
+FIRST, SECOND = np.arange(1.0, 6.0), np.array([2.0, 6.0, 12.0, 20.0])
+"""Factors of a polynomial's coefficients in its derivatives."""
 
 
 def change_speed(speed: ArrayLike, acceleration: ArrayLike, end_speed: ArrayLike, duration: ArrayLike) -> Floats:
@@ -59,12 +61,20 @@ class Chains:
     def at(self, time: Floats) -> tuple[Floats, Floats, Floats]:
         """Value and first and second derivative (n, t) at instants (t,) >= 0; at a seam the later piece counts."""
         n, k = self.starts.shape
-        piece = (time[None, :, None] >= self.starts[:, None, :] - 1e-9).sum(axis=2) - 1
-        flat = piece + np.arange(n)[:, None] * k
-        since = time[None, :] - self.starts.ravel().take(flat)
-        table = self.pieces.reshape(n * k, 6)
-        c = [np.ascontiguousarray(table[:, power]).take(flat) for power in range(6)]
-        value = c[0] + since * (c[1] + since * (c[2] + since * (c[3] + since * (c[4] + since * c[5]))))
-        first = c[1] + since * (2 * c[2] + since * (3 * c[3] + since * (4 * c[4] + since * 5 * c[5])))
-        second = 2 * c[2] + since * (6 * c[3] + since * (12 * c[4] + since * 20 * c[5]))
-        return value, first, second
+        flat = np.broadcast_to(np.arange(n)[:, None] * k, (n, len(time)))
+        for later in range(1, k):
+            flat = flat + (time >= self.starts[:, later, None] - 1e-9)
+        since = time - self.starts.ravel().take(flat)
+        pieces = self.pieces.reshape(n * k, 6)
+        values, first, second = pieces, pieces[:, 1:] * FIRST, pieces[:, 2:] * SECOND
+        return _horner(values, flat, since), _horner(first, flat, since), _horner(second, flat, since)
+
+
+def _horner(factors: Floats, rows: NDArray[np.intp], at: Floats) -> Floats:
+    """Values of polynomials, rows of factors (m, p) with the lowest first, each place with the row it names."""
+    columns = np.ascontiguousarray(factors.T)
+    value = columns[-1].take(rows)
+    for column in columns[-2::-1]:
+        value *= at
+        value += column.take(rows)
+    return value

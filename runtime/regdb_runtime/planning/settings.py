@@ -21,7 +21,8 @@ class LatticeSettings:
     `margin_braking`: m/s^2 over which a stop gives up its margin before the line rather than brake harder.
     `lateral_times`: shortest and longest time of a change of offset, s; `slowest`: speed (m/s) under which its length no longer shrinks.
     `lateral_grid`: metres; changes of offset end at multiples of a whole number of these, so that the next plan finds the same end again.
-    `cap_distance`, `cap_speed`: metres before a boundary, and m/s under a cap, that are aimed at. `headway`, `standstill_gap`: behind a leader; the latter
+    `cap_distance`, `cap_speed`: metres before a boundary, and m/s under a cap, that are aimed at.
+    `headway`, `standstill_gap`: seconds and metres behind a leader; the latter
     more than the 3 m of the emergency check, which drawing up to a queue must not rouse.
     `standing`: m/s under which, within the slack of a stop point, the vehicle stays where it is.
     """

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -66,18 +65,19 @@ def speed_profiles(
 def _changes(start: FrenetState, goal: Goal, view: Ahead, settings: LatticeSettings) -> _Firsts:
     """Changes to each end speed with each intensity; braking ones also hard."""
     speed, acceleration = start.s_dot, start.s_ddot
-    pairs = []
-    for target in _targets(start, goal, view, settings):
-        gain = target - speed
-        if abs(gain) < SAME_SPEED and abs(acceleration) < SAME_SPEED:
-            pairs.append((target, settings.horizon))
-            continue
-        times = {_duration(gain, acceleration, peak, settings.gentle_jerk, settings.shortest) for peak in settings.intensities}
-        if gain < 0:
-            times |= {_duration(gain, acceleration, peak, settings.hard_jerk, settings.shortest) for peak in settings.hard}
-        pairs += [(target, time) for time in sorted(times)]
-    targets, durations = np.array(pairs).T
-    return _Firsts(change_speed(speed, acceleration, targets, durations), durations, targets, np.ones(len(durations), dtype=bool))
+    targets = np.array(_targets(start, goal, view, settings))[:, None]
+    gain = targets - speed
+    gentle = _durations(gain, acceleration, np.array(settings.intensities), settings.gentle_jerk, settings.shortest)
+    hard = _durations(gain, acceleration, np.array(settings.hard), settings.hard_jerk, settings.shortest)
+    hard[gain[:, 0] >= 0.0] = np.nan
+    durations = np.sort(np.concatenate((gentle, hard), axis=1), axis=1)  # NaN last
+    new = np.isfinite(durations)
+    new[:, 1:] &= np.diff(durations, axis=1) != 0.0
+    if abs(acceleration) < SAME_SPEED:
+        durations[np.abs(gain[:, 0]) < SAME_SPEED, 0] = settings.horizon
+        new[np.abs(gain[:, 0]) < SAME_SPEED, 1:] = False
+    ends, durations = np.broadcast_to(targets, new.shape)[new], durations[new]
+    return _Firsts(change_speed(speed, acceleration, ends, durations), durations, ends, np.ones(len(ends), dtype=bool))
 
 
 def _as_braking(start: FrenetState) -> list[_Firsts]:
@@ -102,15 +102,17 @@ def _targets(start: FrenetState, goal: Goal, view: Ahead, settings: LatticeSetti
     return kept
 
 
-def _duration(gain: float, acceleration: float, peak: float, jerk: float, shortest: float) -> float:
-    """Of a change of speed by `gain` that keeps about within a peak of acceleration and of jerk, without overshooting.
+def _durations(gain: Floats, acceleration: float, peaks: Floats, jerk: float, shortest: float) -> Floats:
+    """Of changes of speed by `gain` (n, 1) that keep about within peaks of acceleration (k,) and of jerk, without overshooting: (n, k).
 
     Already accelerating towards the end speed, the longest that does not overshoot with even jerk is 2 gain / acceleration.
     """
-    plain = max(1.5 * abs(gain) / peak, math.sqrt(6 * abs(gain) / jerk), shortest)
-    if acceleration * gain > 0:
-        return max(min(plain, 2 * gain / acceleration), 0.1)
-    return max(plain, 4 * abs(acceleration) / jerk)
+    size = np.abs(gain)
+    plain = np.maximum(1.5 * size / peaks, np.maximum(np.sqrt(6 * size / jerk), shortest))
+    if abs(acceleration) < SAME_SPEED:
+        return plain
+    towards = np.maximum(np.minimum(plain, 2 * gain / acceleration), 0.1)
+    return np.asarray(np.where(acceleration * gain > 0, towards, np.maximum(plain, 4 * abs(acceleration) / jerk)))
 
 
 def _to_gates(start: FrenetState, view: Ahead) -> list[_Firsts]:
