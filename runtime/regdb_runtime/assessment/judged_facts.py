@@ -12,7 +12,7 @@ import numpy as np
 from regdb.interpretation import SAFE, Decision, Interpretation
 from regdb_runtime.assessment.extents import Extents
 from regdb_runtime.assessment.measured import Bools, Column, word
-from regdb_runtime.assessment.others import Other, beside, side_gap
+from regdb_runtime.assessment.others import Other, side_gap
 from regdb_runtime.assessment.settings import AssessmentSettings
 from regdb_runtime.trajectory import Floats
 
@@ -62,14 +62,14 @@ def following_unsafe(
     responded = min(round(settings.response / step), margin.shape[1] - 1)
     falls_short = margin.min(axis=1) < -settings.line_tolerance
     stands = speed[:, -1] <= settings.crawl
-    grown = (margin[:, -1] >= 0.0) | (margin[:, -1] - now >= settings.recovery) | stands
+    grown = (margin[:, -1] >= 0.0) | (margin[:, -1] >= now + settings.recovery) | stands
     restored = (now < 0.0) & grown & (margin[:, responded:].min(axis=1) >= now - settings.line_tolerance)
     return _decided(decision, np.asarray(falls_short & ~restored))
 
 
-def unsafe_pass(decision: Decision, plans: Extents, passed: Other, step: float, speed: Floats) -> Column | None:
+def unsafe_pass(decision: Decision, plans: Extents, passed: Other, step: float, speed: Floats, intended: bool) -> Column | None:
     """Whether the gap to the side of what is passed falls short at any instant alongside, (k,). None when the profile does not say."""
-    gap, numbers = side_gap(plans, passed), _numbers(decision)
+    gap, numbers = side_gap(plans, passed, intended), _numbers(decision)
     if decision.formula == "rss_lateral":
         middle = (plans.left + plans.right) / 2
         own, other = -np.gradient(middle, step, axis=1), -np.gradient(passed.middle, step)
@@ -78,7 +78,7 @@ def unsafe_pass(decision: Decision, plans: Extents, passed: Other, step: float, 
         return _decided(decision, np.asarray((gap < need).any(axis=1)))
     if decision.formula == "clearance":
         short = (gap < numbers["least_clearance"]).any(axis=1)
-        too_fast = (beside(plans, passed) & (speed > numbers["up_to_speed"])).any(axis=1) if "up_to_speed" in numbers else False
+        too_fast = (np.isfinite(gap) & (speed > numbers["up_to_speed"])).any(axis=1) if "up_to_speed" in numbers else False
         return _decided(decision, np.asarray(short), np.asarray(~short & too_fast))
     return None
 

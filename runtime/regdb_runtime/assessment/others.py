@@ -78,21 +78,27 @@ def overtakes(plans: Extents, other: Other, reach: float) -> Bools:
     return np.asarray((level & near).any(axis=1) & gains & (plans.rear[:, 0] < other.front[0]))
 
 
-def clearance(plans: Extents, other: Other) -> Floats:
-    """Least distance, edge to edge, over the whole pass, (k,).
+def alongside(plans: Extents, other: Other, intended: bool) -> Bools:
+    """As `beside`; a pass that is not over when the plan ends goes on beside the other at the plan's last offset, so its last instant counts.
 
-    A pass that is not over when the plan ends goes on beside the other at the plan's last offset: then the gap to the side counts too.
+    An `intended` pass does so even where the plan has not come alongside by then: what it means to do is judged, not only what its horizon shows.
     """
+    level = beside(plans, other)
+    if intended:
+        level[:, -1] |= plans.rear[:, -1] < other.front[-1]
+    return level
+
+
+def clearance(plans: Extents, other: Other, intended: bool) -> Floats:
+    """Least distance, edge to edge, over the whole pass (see `alongside`), (k,)."""
     least = distance(plans.boxes, other.boxes).min(axis=1)
-    going_on = (plans.front[:, -1] > other.rear[-1]) & (plans.rear[:, -1] < other.front[-1])
-    aside = np.maximum(np.maximum(plans.right[:, -1] - other.left[-1], other.right[-1] - plans.left[:, -1]), 0.0)
-    return np.asarray(np.where(going_on, np.minimum(least, aside), least))
+    return np.asarray(np.minimum(least, side_gap(plans, other, intended)[:, -1]))
 
 
-def side_gap(plans: Extents, other: Other) -> Floats:
+def side_gap(plans: Extents, other: Other, intended: bool) -> Floats:
     """Gap to the side while alongside, infinite else, (k, T)."""
     gap = np.maximum(np.maximum(plans.right - other.left, other.right - plans.left), 0.0)
-    return np.asarray(np.where(beside(plans, other), gap, np.inf))
+    return np.asarray(np.where(alongside(plans, other, intended), gap, np.inf))
 
 
 def gap_behind(plans: Extents, other: Other) -> Floats:

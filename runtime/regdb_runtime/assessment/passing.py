@@ -57,7 +57,7 @@ def measure(columns: dict[str, Column], what: Passing, plans: Extents, speed: Fl
     gone = [(other, going) for other in what.near if (going := others.overtakes(plans, other, what.settings.passing_range)).any()]
     if not gone:
         return
-    order = np.array([np.where(going, (other.kind != "bicycle") * 1e3 + others.clearance(plans, other), np.inf) for other, going in gone])
+    order = np.array([np.where(going, (other.kind != "bicycle") * 1e3 + others.clearance(plans, other, intended=False), np.inf) for other, going in gone])
     chosen = order.argmin(axis=0)
     for index, (other, going) in enumerate(gone):
         mine = going & (chosen == index)
@@ -77,10 +77,10 @@ def _fill(columns: dict[str, Column], found: Iterable[tuple[str, Column]], mine:
 
 def _of(what: Passing, passed: Other, plans: Extents, speed: Floats, step: float) -> Iterable[tuple[str, Column]]:
     """Facts of passing one road user, for all plans."""
-    settings, size = what.settings, plans.front.shape[0]
+    settings, size, intended = what.settings, plans.front.shape[0], passed is what.passed
     yield "plan.passes", word(np.full(size, PASSED.index(_kind(passed, settings))), PASSED)
     yield "plan.passing_side", word(_sides(what, passed, plans), SIDES)
-    yield "plan.clearance", number(others.clearance(plans, passed), settings.decimals)
+    yield "plan.clearance", number(others.clearance(plans, passed, intended), settings.decimals)
     yield "plan.passing_distance", number(others.passing_distance(plans, passed, speed), settings.decimals)
     if what.sections is not None:
         within = driven_over.shares_lane(what.sections, plans, passed, settings.line_tolerance)
@@ -90,7 +90,7 @@ def _of(what: Passing, passed: Other, plans: Extents, speed: Floats, step: float
             yield "plan.no_room_for_three_feet", word(room.astype(np.intp), TRUTHS)
     for fact in ("plan.unsafe_pass", "bicycle.endangered_by_pass"):
         decision = judged_facts.decided_by(what.profile, fact)
-        column = judged_facts.unsafe_pass(decision, plans, passed, step, speed) if decision is not None else None
+        column = judged_facts.unsafe_pass(decision, plans, passed, step, speed, intended) if decision is not None else None
         if column is not None:
             yield fact, column
 
