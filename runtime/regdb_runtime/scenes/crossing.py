@@ -87,7 +87,7 @@ class Crossings:
         meeting = np.flatnonzero(gaps < self.settings.meets)
         if not len(meeting):
             return
-        starts, ends = float(own[meeting[0], 2]), float(own[meeting[-1], 2])
+        starts, ends = float(own[meeting[0], 2]), min(float(own[meeting[-1], 2]), lane.length)  # who has left the junction is ahead, not crossing
         turned = math.remainder(_first_heading(lane.center) - math.atan2(planned[1, 1] - planned[0, 1], planned[1, 0] - planned[0, 0]), math.tau)
         came: From = "oncoming" if abs(turned) > self.settings.opposite else "same" if abs(turned) < self.settings.same else "cross"
         if came == "same" and set(lane.predecessors) & {name for item in entry for name in side_by_side(road_map.lanes, item)}:

@@ -214,7 +214,12 @@ class Viewpoint:
         walks, crosswalk, occupied = self.crosswalk_roles(part)
         facts = {**self.everywhere, **walks}
         if part.stage != "road":
+            if self.at_junction:
+                for name in (*NOBODY_CROSSING, "movement.hazard"):  # what the junction leaves open is open
+                    facts.pop(name, None)
             facts |= self.at_junction
+            if self.target is not None and facts.get("target_lane.hazard") is True:
+                facts["movement.hazard"] = True
             facts |= self._turn_on(part, standing)
         if part.stage == "approach":
             facts |= self.signal
