@@ -57,7 +57,8 @@ def measure(columns: dict[str, Column], what: Passing, plans: Extents, speed: Fl
     gone = [(other, going) for other in what.near if (going := others.overtakes(plans, other, what.settings.passing_range)).any()]
     if not gone:
         return
-    order = np.array([np.where(going, (other.kind != "bicycle") * 1e3 + others.clearance(plans, other, intended=False), np.inf) for other, going in gone])
+    nearest = [(other.kind != "bicycle") * 1e3 + others.clearance(plans, other, intended=False) for other, _ in gone]
+    order = np.array([np.where(going, away, np.inf) for away, (_, going) in zip(nearest, gone, strict=True)])
     chosen = order.argmin(axis=0)
     for index, (other, going) in enumerate(gone):
         mine = going & (chosen == index)
