@@ -80,10 +80,11 @@ def sample(
     changes = len(sides.lengths)
     whole = room.reshape(FIELDS, changes, count * points)
     width = points * max(1, BLOCK // (points * changes))
-    flat = [values.ravel() for values in motions]
+    station, speed, acceleration = (values.ravel() for values in motions)
     for first in range(0, count * points, width):
-        along = _Along.of(table, *(values[first : first + width] for values in flat), start.s)
-        _in_plane(along, sides, whole[:, :, first : first + width], workspace)
+        part = slice(first, first + width)
+        along = _Along.of(table, station[part], speed[part], acceleration[part], start.s)
+        _in_plane(along, sides, whole[:, :, part], workspace)
     _jerk(room[4], room[5], settings.step)
     return Candidates(time, *room)
 

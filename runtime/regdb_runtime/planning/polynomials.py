@@ -73,7 +73,7 @@ class Chains:
 def _horner(factors: Floats, rows: NDArray[np.intp], at: Floats) -> Floats:
     """Values of polynomials, rows of factors (m, p) with the lowest first, each place with the row it names."""
     columns = np.ascontiguousarray(factors.T)
-    value = columns[-1].take(rows)
+    value: Floats = columns[-1].take(rows)
     for column in columns[-2::-1]:
         value *= at
         value += column.take(rows)
