@@ -147,3 +147,13 @@ def test_what_does_not_fit_is_named(zone: ZoneSpec, said: str) -> None:
     spec = crossing()
     with pytest.raises(WorldError, match=said):
         built(StreetsSpec(spec.roads, spec.junctions, (), (zone,)))
+
+
+def test_lanes_for_bicycles_and_for_parking_lie_between_the_lanes_and_the_kerb() -> None:
+    road = RoadSpec("main", (Piece(100.0),), bicycle_lane=1.6, parking_lane=2.4)
+    lanes = built(StreetsSpec((road,))).lanes
+    assert lanes["main.e.1"].right == "main.e.bike"
+    assert lanes["main.e.bike"].center[0, 1] == pytest.approx(-3.5 - 0.8)
+    assert lanes["main.e.parking"].center[0, 1] == pytest.approx(-3.5 - 1.6 - 1.2)
+    assert (lanes["main.e.parking"].right_marking, lanes["main.e.parking"].left) == ("curb", None)
+    assert "main.e.parking" not in LaneGraph(built(StreetsSpec((road,)))).neighbors("main.e.1")

@@ -106,7 +106,8 @@ def _corner(start: Floats, ahead: Floats, end: Floats, back: Floats) -> Floats:
 def _draw_crosswalk(brush: Brush, polygon: Floats) -> None:
     """Bars along the direction of travel across the whole width."""
     a, b, c, d = polygon
-    brush.axes.fill(*polygon.T, color=ASPHALT, linewidth=0, zorder=1.35)
+    beyond = (b - a) / np.hypot(*(b - a)) * 1.1
+    brush.axes.fill(*np.array([a, b + beyond, c + beyond, d]).T, color=ASPHALT, linewidth=0, zorder=1.35)
     count = max(2, round(float(np.hypot(*(d - a))) / 1.2))
     for index in range(count):
         first, second = (index + 0.2) / count, (index + 0.72) / count

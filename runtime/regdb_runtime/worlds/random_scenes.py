@@ -116,7 +116,8 @@ def _arm_road(side: str, street: _Street, half: float) -> RoadSpec:
     start = Pose(x + half * math.cos(away), y + half * math.sin(away), street.end.degrees + turn)
     lanes = street.lanes if side == "ahead" else 1
     limit = street.limit if side == "ahead" else min(street.limit, round(to_si(30.0, "mph"), 4))
-    return RoadSpec(side, (Piece(SIDE),), start, lanes, lanes, street.road.width, limit, "double_solid")
+    bicycle_lane = street.road.bicycle_lane if side == "ahead" else 0.0
+    return RoadSpec(side, (Piece(SIDE),), start, lanes, lanes, street.road.width, limit, "double_solid", bicycle_lane=bicycle_lane)
 
 
 def _phased(chance: random.Random, junction: JunctionSpec, street: _Street, sides: list[str]) -> JunctionSpec:

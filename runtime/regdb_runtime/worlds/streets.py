@@ -136,6 +136,13 @@ def _lanes(side: Carriageway, other: Carriageway | None, own_facts: dict[str, Va
             shared | {"lane.kind": "bicycle", "ego.lane_position": "bicycle_lane", "lane.width": road.bicycle_lane},
             left=side.lanes[0], left_same_direction=True, left_marking="solid", right_marking="dashed" if road.parking_lane else "curb",
         )  # fmt: skip
+    if road.parking_lane:
+        # No neighbour of the driven lanes: nobody changes into it, one draws up in it.
+        parking = f"{side.lanes[0].rsplit('.', 1)[0]}.parking"
+        found[parking] = _lane(
+            parking, side, -count * width - road.bicycle_lane, road.parking_lane, ("urban", "parking"), ("vehicle",),
+            shared | {"lane.kind": "parking", "lane.width": road.parking_lane}, left_marking="none", right_marking="curb",
+        )  # fmt: skip
     return found
 
 
