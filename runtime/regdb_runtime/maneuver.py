@@ -21,7 +21,7 @@ class Maneuver:
     `via`: the micro-steps between the state now in force and `current`, all within one tick and without motion. `commits`: the manoeuvre is to
     enter the junction, so it is judged as entering it (`plan.enters_intersection`) wherever its sampled horizon ends. `biases`: what the
     strategist adds to C_distance, by name (`lane_needed`, `promise`, `switch`), in metres; never to legality.
-    `prepares`: the manoeuvre that this one only gets ready for: where that one would be unlawful once signalled, this one falls out too.
+    `prepares`: the manoeuvre that this one only gets ready for: where that one would not be lawful once signalled, this one falls out too.
     `credit`: C_distance counts as no more than this, metres: what it prepares makes up for the rest.
     """
 

@@ -188,7 +188,7 @@ def test_a_stop_sign_is_stopped_at_once_and_then_crossed():
 
 
 def test_a_cyclist_is_passed_by_the_next_lane(road):
-    found = drive(road, route(road), ego(5.0), 18.0, lambda time: (cyclist(90.0 + 4.5 * time),))
+    found = drive(road, route(road), ego(5.0), 22.0, lambda time: (cyclist(140.0 + 4.5 * time),))
     assert found.supers == [LF, OT, LF]
     assert [event for event in found.events if event in ("overtaking_begins", "back_in_lane")] == ["overtaking_begins", "back_in_lane"]
     assert found.clearance() >= 0.9144

@@ -25,8 +25,8 @@ from regdb_runtime.scenes.history import History
 from regdb_runtime.scenes.stretches import Scenes
 from regdb_runtime.trajectory import Candidates
 
-UNLAWFUL, NO_PLAN = 2, 3
-"""Ranks of a candidate whose best plan breaks the law, and of one without a plan."""
+LAWFUL, NO_PLAN = 0, 3
+"""Ranks of a candidate with a lawful plan, and of one without any."""
 LONG = 1000.0
 """Metres or seconds of signalling beyond what any law asks."""
 
@@ -61,9 +61,9 @@ class Evaluator:
         """The best plan of a manoeuvre from `start` on, with the law's verdict on it."""
         if maneuver.refused:
             return Evaluated(maneuver, _without_plan(maneuver, (Rejection(maneuver.refused),)))
-        if maneuver.prepares is not None and not maneuver.prepares.refused:
+        if maneuver.prepares is not None:
             prepared = self._evaluate(maneuver.prepares, start, observation, history, predictions, sweeper, wanted_speed, signalled=True)
-            if prepared.report.rank == UNLAWFUL:
+            if prepared.report.rank != LAWFUL:
                 return Evaluated(maneuver, _without_plan(maneuver, (Rejection(f"prepares:{maneuver.prepares.next}"), *prepared.report.rejections)))
         return self._evaluate(maneuver, start, observation, history, predictions, sweeper, wanted_speed)
 

@@ -73,9 +73,12 @@ def prepare_left(picture: Picture, step: Step) -> Maneuver:
     slow, refused = _by_lane(picture)
     if slow is None:
         return refuse(picture, step, refused)
+    found = replace(keep_lane(picture, step, follow(picture.lead), "left"), credit=picture.settings.lane_change_cost)
+    waited = picture.observation.time - picture.memory.entered
+    if picture.memory.state == step.next and waited <= picture.settings.patience:
+        return found
     prepared = change_left(picture, Step(step.next, f"{step.next.partition('.')[0]}.lane_change_left"))
-    found = keep_lane(picture, step, follow(picture.lead), "left")
-    return replace(found, credit=picture.settings.lane_change_cost, prepares=prepared)
+    return refuse(picture, step, prepared.refused) if prepared.refused else replace(found, prepares=prepared)
 
 
 def change_left(picture: Picture, step: Step) -> Maneuver:

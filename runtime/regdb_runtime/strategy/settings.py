@@ -94,6 +94,8 @@ class StrategySettings:
     """Metres of advance (the unit of all that follows): what a change of lane that the route needs is worth at last; a quarter at first."""
     lane_change_cost: float = 2.0
     """What passing by another lane costs over passing within the lane. Its preparation, no faster than following, is credited with all the rest."""
+    patience: float = 8.0
+    """Seconds for which a pass by another lane stays prepared while that lane is taken; begun is it only where the change could be made now."""
     move: float = 30.0
     """Making a change of lane rather than going on preparing it: what its offsets cost by the default profile, and a little more."""
     return_to_lane: float = 8.0
