@@ -3,7 +3,6 @@
 import datetime
 
 import pytest
-
 from regdb_runtime.scenes.clock_facts import bright_minutes, clock_facts, is_dark, is_summer, offset_hours
 
 ANGELES = (-118.2437, 34.0522)
@@ -31,7 +30,7 @@ def test_sunrise_and_sunset_in_los_angeles(day: str, sunrise: tuple[int, int], s
     [("2026-12-21T12:00", False), ("2026-12-21T17:00", False), ("2026-12-21T17:30", True), ("2026-12-21T06:10", True), ("2026-12-21T06:40", False),
      ("2026-06-21T20:30", False), ("2026-06-21T20:50", True), ("2026-06-21T00:00", True)],
 )  # fmt: skip
-def test_darkness(clock: str, dark: bool) -> None:  # noqa: FBT001  # a table's column
+def test_darkness(clock: str, dark: bool) -> None:  # a table's column
     assert is_dark(local(clock), ANGELES) is dark
 
 
@@ -51,11 +50,12 @@ def test_a_clock_with_a_zone_keeps_it() -> None:
     ("clock", "summer"),
     [("2026-03-08T01:59", False), ("2026-03-08T02:00", True), ("2026-11-01T01:59", True), ("2026-11-01T02:00", False), ("2027-03-14T02:00", True)],
 )
-def test_daylight_saving_time(clock: str, summer: bool) -> None:  # noqa: FBT001
+def test_daylight_saving_time(clock: str, summer: bool) -> None:
     assert is_summer(local(clock)) is summer
 
 
 def test_facts_of_the_clock() -> None:
     assert clock_facts(local("2026-03-02T07:30:15.9"), ANGELES) == {
-        "clock.time": 7 * 3600 + 30 * 60 + 15, "clock.date": datetime.date(2026, 3, 2).toordinal(), "clock.weekday": "monday", "clock.darkness": False,
+        "clock.time": 7 * 3600 + 30 * 60 + 15, "clock.date": datetime.date(2026, 3, 2).toordinal(), "clock.weekday": "monday",
+        "clock.darkness": False,
     }  # fmt: skip

@@ -3,12 +3,11 @@
 import math
 
 import pytest
-from small_worlds import APPROACH, LEFT, LIGHT, RIGHT, STOP, Street, car, cross, told, worst
-
 from regdb_runtime.observation import Indication, Track
 from regdb_runtime.scenes.crossing import Crossings
 from regdb_runtime.scenes.settings import SensorRanges
 from regdb_runtime.scenes.stretches import Scenes
+from small_worlds import APPROACH, LEFT, LIGHT, RIGHT, STOP, Street, car, cross, told, worst
 
 NORTH, SOUTH, WEST = math.pi / 2, -math.pi / 2, math.pi
 RED, GREEN = {LIGHT: (Indication("red"),)}, {LIGHT: (Indication("green"),)}
@@ -42,7 +41,7 @@ def test_ways_that_meet_a_right_turn_and_one_straight_on() -> None:
     # a car from the left meets the right turn; RSS: 2 s of response with 3.5 m/s2, then braking at 4 m/s2; at 13 m/s that is 83 m
     [(40.0, 13.0, True), (70.0, 13.0, True), (110.0, 13.0, False), (14.0, 0.0, False), (30.0, 3.0, False), (-30.0, 13.0, False)],
 )
-def test_cross_traffic(y: float, speed: float, hazard: bool) -> None:  # noqa: FBT001
+def test_cross_traffic(y: float, speed: float, hazard: bool) -> None:
     facts = roles("right", car("crossing", -1.75, y, SOUTH, speed))
     assert facts["cross_traffic.hazard"] is hazard
     assert facts["movement.hazard"] is hazard
@@ -62,7 +61,7 @@ def test_who_is_in_the_intersection() -> None:
 
 
 @pytest.mark.parametrize(("x", "speed", "hazard"), [(50.0, 13.0, True), (110.0, 10.0, False), (14.0, 0.0, False)])
-def test_oncoming_traffic_and_a_left_turn(x: float, speed: float, hazard: bool) -> None:  # noqa: FBT001
+def test_oncoming_traffic_and_a_left_turn(x: float, speed: float, hazard: bool) -> None:
     facts = roles("left", car("oncoming", x, 1.75, WEST, speed), lights=GREEN)
     assert facts["oncoming.hazard"] is hazard
     assert roles("straight", car("oncoming", x, 1.75, WEST, speed), lights=GREEN)["cross_traffic.hazard"] is False
@@ -82,7 +81,7 @@ def test_under_green_who_has_red_before_his_line_is_held() -> None:
 
 
 @pytest.mark.parametrize(("x", "speed", "hazard"), [(-17.0, 4.0, True), (-25.0, 6.0, True), (-60.0, 2.0, False), (-12.0, 4.0, False)])
-def test_a_bicycle_beside_a_right_turn(x: float, speed: float, hazard: bool) -> None:  # noqa: FBT001
+def test_a_bicycle_beside_a_right_turn(x: float, speed: float, hazard: bool) -> None:
     rider = car("rider", x, -4.2, speed=speed, kind="bicycle")
     assert roles("right", rider, lights=GREEN)["movement.hazard"] is hazard
     assert roles("straight", rider, lights=GREEN)["movement.hazard"] is False

@@ -1,7 +1,6 @@
 """Lights and what they say to a movement: arrows before circular lights, the stricter of two, unseen is unknown."""
 
 import pytest
-
 from regdb_runtime.maps.road_map import Light
 from regdb_runtime.observation import Indication
 from regdb_runtime.scenes.light_facts import light_facts

@@ -3,12 +3,12 @@
 from collections import Counter
 from dataclasses import replace
 
+from regdb_runtime.scenes import tellers as module
+from regdb_runtime.scenes.tellers import UNTOLD, eye_facts, surveyed_facts, tellers
 from small_worlds import law, quiet_eye
 
 from regdb.situation import quiet_facts
 from regdb.vocabulary import Fact, Vocabulary
-from regdb_runtime.scenes import tellers as module
-from regdb_runtime.scenes.tellers import UNTOLD, eye_facts, surveyed_facts, tellers
 
 SETS = {name: value for name, value in vars(module).items() if name.endswith("_FACTS") and isinstance(value, frozenset)}
 

@@ -3,9 +3,8 @@
 import math
 
 import pytest
-from small_worlds import GO, Street, car, road, told
-
 from regdb_runtime.observation import Track
+from small_worlds import GO, Street, car, road, told
 
 BACK = math.pi
 
@@ -56,7 +55,7 @@ def test_a_bicycle_is_no_lead_but_a_bicycle_ahead_up_to_beside_the_lane() -> Non
 
 
 @pytest.mark.parametrize(("signal", "turns"), [("left", True), ("right", False), ("off", False), (None, None)])
-def test_whether_the_one_to_be_passed_turns_left(signal: str | None, turns: bool | None) -> None:  # noqa: FBT001
+def test_whether_the_one_to_be_passed_turns_left(signal: str | None, turns: bool | None) -> None:
     facts = roles(street(), car("lead", 130.0, y(1), turn_signal=signal), passes="lead")
     assert facts.get("lead.turning_left") is turns
 
@@ -79,7 +78,7 @@ def test_slower_than_the_traffic() -> None:
     # RSS behind: 2 s to respond, acceleration 3.5, then 4 m/s2 of braking, the front one braking at 8
     [(98.0, 10.0, False), (60.0, 20.0, False), (20.0, 12.0, True), (105.0, 10.0, False), (190.0, 10.0, True), (115.0, 0.0, False)],
 )
-def test_another_lane_is_available_where_it_is_free_behind_alongside_and_ahead(x: float, speed: float, available: bool) -> None:  # noqa: FBT001
+def test_another_lane_is_available_where_it_is_free_behind_alongside_and_ahead(x: float, speed: float, available: bool) -> None:
     assert roles(street(2), car("other", x, y(2, 2), speed=speed))["lane.same_direction_available"] is available
 
 
@@ -127,7 +126,7 @@ def test_the_path_of_a_change_of_lane_may_run_along_the_target() -> None:
     [(130.0, -5.2, "hazard_lights", "none", True), (130.0, -5.2, "none", "none", False), (130.0, -5.2, "emergency_lights", "emergency", True),
      (80.0, -5.2, "hazard_lights", "none", False), (130.0, -9.0, "hazard_lights", "none", False), (130.0, -1.75, "hazard_lights", "none", False)],
 )  # fmt: skip
-def test_a_vehicle_that_stands_beside_the_lane_with_lights_on(x: float, side: float, lights: str, kind: str, beside: bool) -> None:  # noqa: FBT001
+def test_a_vehicle_that_stands_beside_the_lane_with_lights_on(x: float, side: float, lights: str, kind: str, beside: bool) -> None:
     facts = roles(street(), car("stalled", x, side, speed=0.0, warning_lights=lights, hazard_kind=kind))
     assert facts["stationary_hazard_vehicle.beside"] is beside
     if beside:

@@ -25,6 +25,12 @@ def clock_facts(clock: datetime.datetime, place: tuple[float, float], summer_tim
     }
 
 
+def seconds_until(second: float, clock: datetime.datetime) -> float:
+    """From a local time to the next time that its day, or the one after, has come to a second of the day (at least 0)."""
+    now = clock.hour * 3600 + clock.minute * 60 + clock.second + clock.microsecond / 1e6
+    return (second - now) % 86400
+
+
 def is_dark(clock: datetime.datetime, place: tuple[float, float], summer_time: bool = True) -> bool:
     """Whether it is later than half an hour after sunset or earlier than half an hour before sunrise."""
     begins, ends = bright_minutes(clock.date(), place, offset_hours(clock, place[0], summer_time))

@@ -60,18 +60,18 @@ class Courses:
         return self.pieces.road_map.lanes[span.lane]
 
     def parts(
-        self, lane_path: LanePath, front: float, reach: float, stages: Sequence[tuple[float, Stage]], clock: datetime.datetime, speed: float
-    ) -> list[Part]:
+        self, lane_path: LanePath, front: float, reach: float, stages: Sequence[tuple[float, Stage]], clock: datetime.datetime, speed: float,
+        change: float | None,
+    ) -> list[Part]:  # fmt: skip
         """The parts from the front bumper to `reach` metres ahead (or the path's end), in order, without gaps.
 
         `stages`: station from which each holds, ascending, the first at or before the front. The clock of a part is that of arrival at its
-        start at the present speed; where hours of a zone begin or end on the way there is a border at the place reached by then.
+        start at the present speed; after `change` seconds (None: not on the way) the hour changes the facts: a border at the place reached then.
         """
-        last = max(min(front + reach, lane_path.path.length), front + SHORTEST)
+        last = max(min(front + reach, lane_path.path.length), front + 2 * SHORTEST)
         rails = self.rails(lane_path)
         borders = {front, last} | {at for at, _ in stages if front < at < last}
         borders |= {at for start, end, _ in rails for at in (start - self.settings.approach, end) if front < at < last}
-        change = None if speed < 1.0 else self.pieces.next_change(clock, (last - front) / speed)
         turning = last + 1.0 if change is None else front + change * speed
         if turning < last:
             borders.add(turning)

@@ -32,10 +32,11 @@ def junction_facts(
         return dict(NO_JUNCTION)
     shape = _shape(road_map, inner, approach, ways)
     own = {name: value for name, value in inner.facts.items() if name.startswith("intersection.")}
-    facts: dict[str, Value] = {"intersection.present": True, **shape, **_control(road_map, junction, ways), **own}
+    crosses = inner.junction is not None  # a signal between junctions has no lane within one
+    facts: dict[str, Value] = {"intersection.present": crosses, **shape, **_control(road_map, junction, ways), **own}
     if stage == "inside":
         past = {**NO_SIGNS, **NO_SIGNAL, "signal.present": False, "signal.place": "none"}
-        return facts | past | {"ego.in_intersection": True, "intersection.distance": 0.0}
+        return facts | past | {"ego.in_intersection": crosses, "intersection.distance": 0.0}
     facts |= {"ego.in_intersection": False, "stop_line.present": junction.stop_line_marked}
     if junction.control != "unknown":
         facts |= {
@@ -43,7 +44,7 @@ def junction_facts(
             "sign.yield": junction.control == "yield",
         }  # fmt: skip
     if junction.control == "signal" or junction.lights:
-        facts |= {"signal.present": True, "signal.place": "intersection" if ways or inner.junction is not None else "midblock"}
+        facts |= {"signal.present": True, "signal.place": "intersection" if crosses else "midblock"}
     elif junction.control != "unknown":
         facts |= {"signal.present": False, "signal.place": "none", **NO_SIGNAL}
     return facts

@@ -4,17 +4,18 @@ from __future__ import annotations
 
 import datetime
 import math
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
 
-from regdb.condition import And, Compare, Node, Not, Or
+from regdb.condition import Compare, Literal, Within, literals
 from regdb.regulation import Regulation
 from regdb.vocabulary import Value
 from regdb_runtime.maps.lines import inside, project
 from regdb_runtime.maps.road_map import Floats, Lane, RoadMap, Zone
+from regdb_runtime.scenes.clock_facts import seconds_until
 from regdb_runtime.scenes.lane_facts import lane_facts, types_with_lanes
 from regdb_runtime.scenes.sign_facts import AT_JUNCTION, Codes, sign_facts
 
@@ -48,24 +49,28 @@ class Band:
 def bounds_by_fact(regulations: Iterable[Regulation]) -> dict[str, tuple[float, ...]]:
     """Fact -> every constant in SI that some condition compares it with alone, ascending: where a distance on the map changes the law."""
     found: dict[str, set[float]] = {}
-    for rule in regulations:
-        for node in (rule.when, rule.unless):
-            if node is not None:
-                _collect(node, found)
+    for literal in _literals_of(regulations):
+        if isinstance(literal, Compare):
+            terms = (*literal.left.terms, *((-scale, fact) for scale, fact in literal.right.terms))
+            if len(terms) == 1 and terms[0][0]:
+                scale, fact = terms[0]
+                found.setdefault(fact, set()).add((literal.right.constant - literal.left.constant) / scale)
     return {fact: tuple(sorted(values)) for fact, values in sorted(found.items())}
 
 
-def _collect(node: Node, found: dict[str, set[float]]) -> None:
-    if isinstance(node, (And, Or)):
-        for part in node.parts:
-            _collect(part, found)
-    elif isinstance(node, Not):
-        _collect(node.part, found)
-    elif isinstance(node, Compare):
-        terms = (*node.left.terms, *((-scale, fact) for scale, fact in node.right.terms))
-        if len(terms) == 1 and terms[0][0]:
-            scale, fact = terms[0]
-            found.setdefault(fact, set()).add((node.right.constant - node.left.constant) / scale)
+def hours_of(regulations: Iterable[Regulation]) -> set[int]:
+    """Every time of the day, in seconds, at which some condition begins or ceases to hold."""
+    rules = tuple(regulations)
+    spans = [literal for literal in _literals_of(rules) if isinstance(literal, Within) and literal.fact == "clock.time"]
+    found = {second for span in spans for second in (span.start, span.end)}
+    return {int(second) % 86400 for second in (*found, *bounds_by_fact(rules).get("clock.time", ()))}
+
+
+def _literals_of(regulations: Iterable[Regulation]) -> Iterator[Literal]:
+    for rule in regulations:
+        for node in (rule.when, rule.unless):
+            if node is not None:
+                yield from literals(node)
 
 
 class LanePieces:
@@ -216,8 +221,7 @@ def runs(zone: Zone, clock: datetime.datetime) -> bool:
 
 
 def _waits(zone: Zone, clock: datetime.datetime) -> list[float]:
-    second = clock.hour * 3600 + clock.minute * 60 + clock.second + clock.microsecond / 1e6
-    return [(border - second) % 86400 for span in zone.hours for border in (span.start, span.end)]
+    return [seconds_until(border, clock) for span in zone.hours for border in (span.start, span.end)]
 
 
 def points_at(lane: Lane, stations: Floats) -> Floats:

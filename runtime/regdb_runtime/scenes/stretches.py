@@ -18,14 +18,14 @@ from regdb_runtime.maps.lane_path import Junction, LanePath
 from regdb_runtime.maps.road_map import Lane, RoadMap
 from regdb_runtime.observation import Footprint, Observation
 from regdb_runtime.scenes.around import Around
-from regdb_runtime.scenes.clock_facts import clock_facts
+from regdb_runtime.scenes.clock_facts import bright_minutes, clock_facts, offset_hours, seconds_until
 from regdb_runtime.scenes.course import Courses, Part, stages_of
 from regdb_runtime.scenes.crossing import Crossings
 from regdb_runtime.scenes.eye_facts import EyeReport
 from regdb_runtime.scenes.history import History, RailAhead, first_rail
 from regdb_runtime.scenes.instant import Instant, Viewed
 from regdb_runtime.scenes.junction_facts import junction_facts
-from regdb_runtime.scenes.pieces import LanePieces, bounds_by_fact
+from regdb_runtime.scenes.pieces import LanePieces, bounds_by_fact, hours_of
 from regdb_runtime.scenes.roles import OnPart, Viewpoint, measures_on
 from regdb_runtime.scenes.settings import EgoFacts, SceneSettings, SensorRanges, passenger_car
 from regdb_runtime.scenes.sign_facts import sign_codes
@@ -62,6 +62,7 @@ class Scenes:
         pieces = LanePieces(road_map, bounds_by_fact(database.regulations), sign_codes(database.vocabulary), self.settings.border_step)
         self.courses = Courses(pieces, self.settings)
         self._asked = tellers(database.vocabulary)
+        self._times = tuple(sorted(hours_of(database.regulations)))
         self._sun = road_map.origin or self.settings.sun_at
         self._crossings: dict[tuple[str, ...], Crossings] = {}
         self._views: dict[tuple[str, int], View] = {}
@@ -107,7 +108,9 @@ class Scenes:
         around = instant.around(maneuver.lane_path.path)
         crossed = junction is not None and history.past.line == junction.id and history.past.crossed
         stages, line = stages_of(junction, around.front, crossed, self.footprint.length, self.settings)
-        parts = self.courses.parts(maneuver.lane_path, around.front, self.settings.reach, stages, observation.clock, observation.ego.speed)
+        speed = observation.ego.speed
+        change = None if speed < 1.0 else self._next_change(observation.clock, self.settings.reach / speed)
+        parts = self.courses.parts(maneuver.lane_path, around.front, self.settings.reach, stages, observation.clock, speed, change)
         view = Viewpoint(self, instant, maneuver, around, history)
         found = []
         for part in parts:
@@ -125,10 +128,22 @@ class Scenes:
             self._instant = Instant(observation, self.road_map, self.footprint, self.settings, self.ranges, self._eye, clock)
         return self._instant
 
+    def _next_change(self, clock: datetime.datetime, within: float) -> float | None:
+        """Seconds until the hour changes the law's facts for the first time (a rule's hours, a zone's, dawn, dusk, midnight), if within so many."""
+        bright = bright_minutes(clock.date(), self._sun, offset_hours(clock, self._sun[0], self.settings.summer_time))
+        waits = (seconds_until(at, clock) for at in (*self._times, 0.0, 60.0 * bright[0], 60.0 * bright[1] + 1.0))
+        zones = self.courses.pieces.next_change(clock, within)
+        return min((wait for wait in (*waits, *([] if zones is None else [zones])) if 0.0 < wait <= within), default=None)
+
+    def _clock(self, part: Part, instant: Instant) -> Mapping[str, Value]:
+        """What the clock says on arrival at a part."""
+        now = instant.observation.clock
+        return {} if part.clock == now else clock_facts(part.clock, self._sun, self.settings.summer_time)
+
     def _stretch(
         self, part: Part, encoded: Encoded, on: OnPart, line: float | None, signalled: Mapping[str, Value], fastest: float, view: Viewpoint
     ) -> Stretch:
-        roles = {**on.facts, **signalled}
+        roles = {**on.facts, **self._clock(part, view.instant), **signalled}
         measures = measures_on(encoded.scene.facts, on.clear)
         sight = measures.get("speed.unsafe_for_conditions")
         if sight is not None and view.look.judged("speed.unsafe_for_conditions", {"speed": fastest, **sight}) is False:
@@ -166,10 +181,10 @@ class Scenes:
         """What stands still: the vehicle's own make, the lane's piece, the junction's stage, the rails."""
         facts = {**self.ego.facts, **part.piece.facts}
         inner = view.inner
-        if junction is not None and inner is not None:
-            approach = view.approach
+        if junction is not None:
             ways = () if view.crossings is None else tuple(view.crossings.ways)
-            facts |= junction_facts(self.road_map, junction, self.road_map.lanes[inner], approach, ways, part.stage)
+            lane = self._lane(part) if inner is None else self.road_map.lanes[inner]
+            facts |= junction_facts(self.road_map, junction, lane, view.approach, ways, part.stage)
         else:
             facts |= junction_facts(self.road_map, _NOWHERE, self._lane(part), None, (), "road")
         if part.rail is not None and part.rail.facts is not None:
