@@ -13,6 +13,7 @@ from regdb.situation import Plan, Situation
 from regdb.vocabulary import Value
 from regdb_runtime.assessment.judged_facts import decided_by
 from regdb_runtime.assessment.settings import AssessmentSettings
+from regdb_runtime.index.slots import PreparedScene
 from regdb_runtime.maneuver import Maneuver
 from regdb_runtime.planning.goal import SpeedCap
 from regdb_runtime.scenes.stretch import Stretch
@@ -23,11 +24,17 @@ Cap = tuple[float, str]
 """A speed (m/s) and what asks for it."""
 
 
+REMEMBERED = 1024
+"""Answers kept: scenes stay the same from tick to tick, and so do the limits on them."""
+
+
 class Caps:
-    """Finds what binds the speed on each stretch."""
+    """Finds what binds the speed on each stretch; the law is asked once for the facts that its speed limits hang on."""
 
     def __init__(self, settings: AssessmentSettings, profile: Interpretation | None) -> None:
         self.settings, self.profile = settings, profile
+        self._known: dict[tuple[object, ...], tuple[PreparedScene, Cap | None]] = {}
+        self._facts: dict[int, tuple[tuple[Regulation, ...], tuple[str, ...]]] = {}
 
     def of(self, maneuver: Maneuver, stretches: Sequence[Stretch], shared: Mapping[str, Value]) -> tuple[SpeedCap, ...]:
         """The caps along the path; neighbouring stretches with the same one are joined. Stretches without limit have none."""
@@ -45,11 +52,28 @@ class Caps:
         return tuple(found)
 
     def _strictest(self, maneuver: Maneuver, stretch: Stretch, shared: Mapping[str, Value]) -> Cap | None:
+        """The law's, remembered, and what the profile asks."""
+        rules = stretch.view.concerned(maneuver.current, maneuver.next)
+        told = tuple((name, shared.get(name, stretch.roles.get(name))) for name in self._asked_of(rules))
+        key = id(stretch.prepared), id(rules), told
+        held = self._known.get(key)
+        if held is None or held[0] is not stretch.prepared:
+            if len(self._known) >= REMEMBERED:
+                self._known.clear()
+            held = self._known[key] = stretch.prepared, self._of_law(maneuver, stretch, shared)
+        return min((cap for cap in (held[1], self._seen_clear(stretch)) if cap is not None), default=None)
+
+    def _asked_of(self, rules: tuple[Regulation, ...]) -> tuple[str, ...]:
+        """Facts on which speed limits among some rules hang, through whatever defeats them too."""
+        held = self._facts.get(id(rules))
+        if held is None or held[0] is not rules:
+            held = self._facts[id(rules)] = rules, tuple(sorted(_facts_of_limits(rules)))
+        return held[1]
+
+    def _of_law(self, maneuver: Maneuver, stretch: Stretch, shared: Mapping[str, Value]) -> Cap | None:
         facts: dict[str, Value] = {**stretch.roles, **shared, SPEED: 0.0}
         verdict = stretch.view.judge(stretch.prepared, Plan(maneuver.current, maneuver.next, facts))
         found = [(item.bound, item.regulation.citation) for item in verdict.limits if _caps_speed(item.limit.fact, item.limit.direction)]
-        seen = self._seen_clear(stretch)
-        found += [seen] if seen is not None else []
         least = min((bound for bound, _ in found), default=math.inf)
         found += self._possible(maneuver, stretch, facts, least)
         return min(found, default=None)
@@ -75,6 +99,22 @@ class Caps:
 
 _FASTER_THAN_ANY_LIMIT = 100.0
 """m/s at which every limit of a road is broken."""
+
+
+def _facts_of_limits(rules: Sequence[Regulation]) -> set[str]:
+    """Facts that decide whether a limit on speed among these rules is in effect, and its bound."""
+    defeaters: dict[str, list[Regulation]] = {}
+    for rule in rules:
+        for target in rule.targets:
+            defeaters.setdefault(target, []).append(rule)
+    queue = [rule for rule in rules if any(_caps_speed(limit.fact, limit.direction) for limit in rule.limits)]
+    seen: dict[int, Regulation] = {}
+    while queue:
+        rule = queue.pop()
+        if id(rule) not in seen:
+            seen[id(rule)] = rule
+            queue += defeaters.get(rule.id, [])
+    return {fact for rule in seen.values() for fact in rule.facts} - {SPEED}
 
 
 def _caps_speed(fact: str, direction: str) -> bool:
