@@ -143,7 +143,7 @@ def test_a_red_that_turns_green_in_time_is_passed_without_a_stop(signals):
 
 
 def test_green_is_crossed_without_stopping(signals):
-    found = drive(signals, route(signals, "straight"), ego(-110.0), 12.0, light=lambda _: "green")
+    found = drive(signals, route(signals, "straight"), ego(-160.0), 15.0, light=lambda _: "green")
     assert found.states == [f"{LF}.go_straight", f"{IH}.go_straight", f"{LF}.go_straight"]
     assert found.speeds().min() > 14.0
 

@@ -65,8 +65,8 @@ def test_a_held_vehicle_does_not_creep():
     assert stop_point(approaching(), LINE, 60.0, SETTINGS).station == 100.0
 
 
-def test_decision_distance_is_gentle_braking_after_two_ticks():
-    assert decision_distance(10.0, SETTINGS) == pytest.approx(10.0 + 25.0 + 5.0)
+def test_decision_distance_is_gentle_braking_after_a_tick():
+    assert decision_distance(10.0, SETTINGS) == pytest.approx(5.0 + 100.0 / 2.4 + 3.0)
 
 
 @pytest.mark.parametrize(

@@ -119,7 +119,7 @@ class TestIntersections:
 
     def test_handling_does_not_flicker_at_its_border(self, signals):
         plans = strategist(signals, "straight")
-        at = seen(ego(-75.0, 10.0))
+        at = seen(ego(-95.0, 10.0))
         assert offers(plans, at)[f"{IH}.go_straight"] == "no_junction"
         assert offers(plans, at, f"{IH}.go_straight", handling=True)[f"{IH}.go_straight"] == ""
 
@@ -225,7 +225,7 @@ class TestOvertaking:
 
     def test_nobody_overtakes_before_a_junction_that_comes_too_soon(self, signals):
         plans = strategist(signals, "straight")
-        assert offers(plans, seen(ego(-120.0), cyclist(-65.0)))[f"{OT}.go_straight"] == "no_room"
+        assert offers(plans, seen(ego(-140.0), cyclist(-70.0)))[f"{OT}.go_straight"] == "no_room"
         assert offers(plans, seen(ego(-290.0), cyclist(-240.0)))[f"{OT}.go_straight"] == ""
 
     def test_overtaking_begins_from_lane_following_alone(self, road):

@@ -25,8 +25,8 @@ from regdb_runtime.scenes.history import History
 from regdb_runtime.scenes.stretches import Scenes
 from regdb_runtime.trajectory import Candidates
 
-LAWFUL, NO_PLAN = 0, 3
-"""Ranks of a candidate with a lawful plan, and of one without any."""
+LAWFUL, UNKNOWN, NO_PLAN = 0, 1, 3
+"""Ranks of a candidate with a lawful plan, of one whose plans nobody can judge, and of one without any."""
 LONG = 1000.0
 """Metres or seconds of signalling beyond what any law asks."""
 
@@ -65,7 +65,11 @@ class Evaluator:
             prepared = self._evaluate(maneuver.prepares, start, observation, history, predictions, sweeper, wanted_speed, signalled=True)
             if prepared.report.rank != LAWFUL:
                 return Evaluated(maneuver, _without_plan(maneuver, (Rejection(f"prepares:{maneuver.prepares.next}"), *prepared.report.rejections)))
-        return self._evaluate(maneuver, start, observation, history, predictions, sweeper, wanted_speed)
+        found = self._evaluate(maneuver, start, observation, history, predictions, sweeper, wanted_speed)
+        if maneuver.commits and maneuver.may_wait and found.report.rank == UNKNOWN:
+            patient = replace(maneuver, commits=False)
+            found = self._evaluate(patient, start, observation, history, predictions, sweeper, wanted_speed)
+        return found
 
     def _evaluate(
         self, maneuver: Maneuver, start: EgoState, observation: Observation, history: History, predictions: Predictions,

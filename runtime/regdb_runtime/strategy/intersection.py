@@ -9,7 +9,7 @@ from regdb_runtime.observation import TurnSignal
 from regdb_runtime.planning.goal import Goal
 from regdb_runtime.strategy.lane_following import refuse
 from regdb_runtime.strategy.picture import Picture, follow
-from regdb_runtime.strategy.stop_line import decision_distance, must_stop_on_yellow, stop_point
+from regdb_runtime.strategy.stop_line import decision_distance, must_stop_on_yellow, stop_point, waiting_distance
 
 if TYPE_CHECKING:
     from regdb_runtime.maneuver import Junction
@@ -91,6 +91,7 @@ def _maneuver(picture: Picture, step: Step, goal: Goal, junction: Junction, comm
     return Maneuver(
         step.current, step.next, picture.lane, picture.lane_path, goal, _SIGNALS.get(junction.turn, "off"),
         lead=None if goal.follow is None else goal.follow.track, junction=junction, via=step.via, commits=commits,
+        may_wait=junction.stop_station - picture.front > waiting_distance(picture.speed, picture.settings),
     )  # fmt: skip
 
 

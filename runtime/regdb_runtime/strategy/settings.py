@@ -25,16 +25,19 @@ class StrategySettings:
     """Metres of driving after which a path is asked for anew: often enough that `path_needed` always remains."""
 
     handling_distance: float = 50.0
-    handling_time: float = 6.0
-    """Intersection handling begins at the greater of 50 m and 6 s before the line: time for one decision more than stopping takes."""
+    handling_time: float = 8.0
+    """Intersection handling begins at the greater of 50 m and 8 s before the line: a little before the stop there must be decided."""
     handling_hysteresis: float = 15.0
     """Metres farther than which it ends again when a line recedes (a change of lane); less would ping-pong."""
-    decision_braking: float = 2.0
-    """m/s2; the stop is decided where this gentle braking still reaches the line: the bound of the paper's speed figure."""
-    decision_time: float = 1.0
-    """Seconds driven on before that braking begins: two strategic ticks."""
-    decision_margin: float = 5.0
+    decision_braking: float = 1.2
+    """m/s2; stopping or entering is decided where this mean braking still reaches the line. The sampler's smooth stop peaks at 1.5 times the mean:
+    1.8 m/s2, within the 2 m/s2 of comfort (and of the paper's speed figure)."""
+    decision_time: float = 0.5
+    """Seconds driven on before that braking begins: one strategic tick."""
+    decision_margin: float = 3.0
     """Metres added to the decision's distance, so that a car that creeps up to the line also decides."""
+    waiting_braking: float = 2.5
+    """m/s2; what is not known about the junction (whether its far side is free, what a light shows) may come to be known until this is needed."""
     yellow_braking: float = 3.0
     """m/s2; on yellow the vehicle stops wherever this reaches the line (ITE's signal timing reckons with 10 ft/s2)."""
 

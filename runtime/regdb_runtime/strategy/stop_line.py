@@ -68,8 +68,13 @@ def stop_point(memory: StopMemory, junction: Junction, front: float, settings: S
 
 
 def decision_distance(speed: float, settings: StrategySettings) -> float:
-    """Metres before the line at which stopping or going on is decided: gentle braking after two ticks, and a margin."""
+    """Metres before the line at which stopping or going on is decided: gentle braking after a tick, and a margin."""
     return speed * settings.decision_time + speed * speed / (2 * settings.decision_braking) + settings.decision_margin
+
+
+def waiting_distance(speed: float, settings: StrategySettings) -> float:
+    """Metres before the line up to which what is unknown may wait."""
+    return speed * settings.decision_time + speed * speed / (2 * settings.waiting_braking) + settings.decision_margin
 
 
 def must_stop_on_yellow(
