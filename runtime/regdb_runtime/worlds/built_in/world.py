@@ -46,6 +46,7 @@ class BuiltInWorld:
         self._signals = Signals(self._map)
         self.eye = eye or build_eye(spec.eye, vocabulary)
         self.time = 0.0
+        self._now: tuple[Track, ...] | None = None
         self.ego = self._first_ego()
         self.contacts: list[Contact] = []
         self._touched: set[str] = set()
@@ -78,7 +79,9 @@ class BuiltInWorld:
 
     def tracks(self) -> tuple[Track, ...]:
         """Everybody but the ego, near and far."""
-        return (*self._traffic.tracks(self.time), *(person.track() for person in self._people), *self._parked)
+        if self._now is None:
+            self._now = (*self._traffic.tracks(self.time), *(person.track() for person in self._people), *self._parked)
+        return self._now
 
     def observe(self) -> Observation:
         """What is seen now: road users within the sensors' range, lights that face the ego, and what the eye reports."""
@@ -106,7 +109,7 @@ class BuiltInWorld:
         self._traffic.step(self.time, duration, self.ego, self.footprint, self._ego_ahead(), self._people)
         self._walk(duration)
         self.ego = move_ego(self.ego, plan, turn_signal, duration, self.footprint, self._ego_settings)
-        self.time = after
+        self.time, self._now = after, None
         self._note_contacts()
 
     def _walk(self, duration: float) -> None:
