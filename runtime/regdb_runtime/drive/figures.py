@@ -16,6 +16,7 @@ from regdb.units import from_si
 from regdb_runtime.drive.events import Event, events_of, limit_at
 from regdb_runtime.drive.log import Log
 from regdb_runtime.drive.picture import Instant, PictureSettings, paint_scene
+from regdb_runtime.drive.scene_pictures import FAR
 from regdb_runtime.errors import MissingExtra
 from regdb_runtime.maps.road_map import RoadMap
 
@@ -27,25 +28,25 @@ Record = Mapping[str, Any]
 PICTURE_INCHES = 4.0
 """Width of a scene beside a figure; lines and letters are painted for 14."""
 MPH = float(from_si(1.0, "mph"))
-VIEW = PictureSettings(along=62.0, across=38.0)
 BEFORE, AFTER = 9.0, 8.0
 """Seconds shown before the first and after the last event."""
 RED, YELLOW, INK, SOFT, BLUE, GREEN = "#c62828", "#f0a500", "#1a1a1a", "#8a8f98", "#1f5fa8", "#2e7d32"
 _STATE_COLORS = {"lane_following": "#cfdced", "intersection_handling": "#f2d4bb", "overtaking": "#c6e3c8", "emergency_stop": "#efb4b4"}
 _LABELS = {
-    "overtaking_begins": "overtaking begins", "back_in_lane": "back in lane", "stopped": "full stop", "released": "turn begins",
-    "zone_detected": "zone detected,\nbraking begins", "reduced_speed": "limit reached,\nkept in the zone",
+    "overtaking_begins": "overtaking begins", "alongside": "alongside", "back_in_lane": "back in lane", "stopped": "full stop",
+    "released": "turn begins", "zone_detected": "zone detected,\nbraking begins", "reduced_speed": "limit reached,\nkept in the zone",
 }  # fmt: skip
 _LINES = {"zone_detected": (RED, "-"), "reduced_speed": (YELLOW, "--")}
 
 
 @dataclass(frozen=True)
 class Sheet:
-    """One figure: its file's name, its title, and the events it marks."""
+    """One figure: its file's name, its title, the events it marks, and those whose scene stands beside it."""
 
     name: str
     title: str
     events: tuple[str, str]
+    pictures: tuple[str, ...]
 
 
 @dataclass(frozen=True)
@@ -55,15 +56,17 @@ class Scenes:
     road_map: RoadMap
     instants: Mapping[str, Instant]
 
-    def paint(self, axes: Axes, name: str) -> None:
-        """The scene at an event, onto axes that are there."""
-        paint_scene(axes, self.road_map, self.instants[name], scale=PICTURE_INCHES / 14.0, settings=VIEW)
+    def paint(self, axes: Axes, name: str, count: int) -> None:
+        """The scene at an event, onto axes that are there; the more stand above each other, the flatter each is."""
+        along, ahead = (100.0, 36.0) if name in FAR else (58.0, 14.0)
+        view = PictureSettings(along=along, across=along * (0.6 if count < 3 else 0.36), ahead=ahead)
+        paint_scene(axes, self.road_map, self.instants[name], scale=PICTURE_INCHES / 14.0, settings=view)
 
 
 SHEETS = (
-    Sheet("cyclist", "Overtaking a cyclist", ("overtaking_begins", "back_in_lane")),
-    Sheet("right-on-red", "Right turn on red", ("stopped", "released")),
-    Sheet("speed", "Reduced speed past a school", ("zone_detected", "reduced_speed")),
+    Sheet("cyclist", "Overtaking a cyclist", ("overtaking_begins", "back_in_lane"), ("overtaking_begins", "alongside", "back_in_lane")),
+    Sheet("right-on-red", "Right turn on red", ("stopped", "released"), ("stopped", "released")),
+    Sheet("speed", "Reduced speed past a school", ("zone_detected", "reduced_speed"), ("zone_detected", "reduced_speed")),
 )
 
 
@@ -96,7 +99,7 @@ def draw(log: Log, sheet: Sheet, marked: Sequence[Event], scenes: Scenes | None 
         from matplotlib.figure import Figure
     except ModuleNotFoundError as error:
         raise MissingExtra("matplotlib", "plots", "drawing figures") from error
-    shown = [] if scenes is None else [event for event in marked if event.name in scenes.instants]
+    shown = () if scenes is None else tuple(name for name in sheet.pictures if name in scenes.instants)
     figure = Figure(figsize=(10.8 if shown else 6.4, 4.9), layout="constrained")
     FigureCanvasAgg(figure)
     ticks = _window(log.ticks, marked)
@@ -114,11 +117,14 @@ def draw(log: Log, sheet: Sheet, marked: Sequence[Event], scenes: Scenes | None 
     above.set_title(f"{sheet.title}: {_place(log)}", loc="left", fontsize=10, color=INK)
     above.tick_params(labelbottom=False)
     below.set_xlabel(f"time, s   (perception: {log.run['provenance']}; world: {log.run['world']})", fontsize=8.5, color=INK)
-    for row, event in enumerate(shown):
-        axes = figure.add_subplot(columns[0, 1].subgridspec(len(shown), 1)[row])
+    beside = columns[0, 1].subgridspec(len(shown), 1) if shown else None
+    for row, name in enumerate(shown):
+        assert beside is not None
         assert scenes is not None
-        scenes.paint(axes, event.name)
-        axes.set_title(f"{_LABELS[event.name]}, {event.time:.1f} s".replace("\n", " "), fontsize=8.5, loc="left", color=INK)
+        axes = figure.add_subplot(beside[row])
+        scenes.paint(axes, name, len(shown))
+        said = _LABELS[name].replace("\n", " ")
+        axes.set_title(f"{said}, {scenes.instants[name].observation.time:.1f} s", fontsize=8.5, loc="left", color=INK)
     return figure
 
 
@@ -149,7 +155,7 @@ def _distance(axes: Axes, ticks: Sequence[Record], marked: Sequence[Event], log:
     room = 0.06 * (high - low)
     axes.set_ylim(low - room, high + 2.6 * room)
     axes.set_xlim(times[0], times[-1])
-    axes.legend(loc="lower right", fontsize=7.5, frameon=False)
+    axes.legend(loc="best", fontsize=7.5, frameon=False)
 
 
 def _states(axes: Axes, ticks: Sequence[Record]) -> None:
@@ -218,7 +224,7 @@ def _speed(axes: Axes, ticks: Sequence[Record], zones: Sequence[Record]) -> None
     top = max([*speeds, *(item * MPH for item in limits if item is not None)])
     axes.set_ylim(-1.0, top * 1.22 + 1)
     axes.set_ylabel("speed, mph", fontsize=8.5, color=INK)
-    axes.legend(loc="lower right", fontsize=7.5, frameon=False)
+    axes.legend(loc="best", fontsize=7.5, frameon=False)
 
 
 def _cite(axes: Axes, ticks: Sequence[Record], limits: Sequence[float | None]) -> None:

@@ -59,8 +59,8 @@ _SIGHT = 120.0
 class PaperScene:
     """What varies between the paper's scene and its variants; the defaults are the paper's own drive.
 
-    `lanes` in each direction of the first road, `width` of each, `divider` between them and `center` in the middle of the road. `beside`: somebody
-    comes up in the second lane as the cyclist is met. `light`: what the ego meets; `no_turn_sign`, `pedestrian` and `cross_traffic` at it.
+    `lanes` in each direction of the first road, `width` of each, `divider` between them and `center` in the middle of the road. `beside`: traffic
+    in the second lane, before and behind, as the cyclist is met. `light`: what the ego meets; `no_turn_sign`, `pedestrian` and `cross_traffic` at it.
     `school`: which law the school's signs and the city's acts invoke.
     """
 
@@ -199,11 +199,12 @@ def _cyclists(scene: PaperScene) -> tuple[CyclistSpec, ...]:
 
 
 def _vehicles(scene: PaperScene) -> tuple[VehicleSpec, ...]:
-    """People on the road: one who comes up on the left as the cyclist is met, oncoming traffic, and who crosses while the light is red."""
+    """People on the road: those in the second lane as the cyclist is met, oncoming traffic, and who crosses while the light is red."""
     found = []
     if scene.part in ("whole", "cyclist"):
         if scene.lanes > 1 and scene.beside:
-            found.append(VehicleSpec("beside", "first.e.2", 2.0, MPH_35, wish=MPH_35 + 1.0))
+            found.append(VehicleSpec("ahead_left", "first.e.2", 150.0, MPH_35, wish=MPH_35 + 0.5))
+            found.append(VehicleSpec("behind_left", "first.e.2", 2.0, MPH_35, wish=MPH_35, enters=5.0))
         found += [VehicleSpec(f"oncoming_{n}", f"first.w.{scene.lanes}", 20.0 + 90.0 * n, 14.0) for n in range(2)]
     if _has_junction(scene):
         first = 24.0 if scene.part == "whole" else 6.0

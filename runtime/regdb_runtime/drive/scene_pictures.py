@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import datetime
 import math
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
@@ -19,21 +19,35 @@ from regdb_runtime.trajectory import Trajectory
 
 Record = Mapping[str, Any]
 WORDS = {
-    "overtaking_begins": "Overtaking begins", "back_in_lane": "Back in lane", "overtaking_given_up": "Overtaking given up", "stopped": "Full stop",
-    "released": "Leaves the stop", "zone_detected": "Zone detected, braking begins", "reduced_speed": "Reduced speed reached",
+    "overtaking_begins": "Overtaking begins", "alongside": "Alongside", "back_in_lane": "Back in lane", "overtaking_given_up": "Overtaking given up",
+    "stopped": "Full stop", "released": "Leaves the stop", "zone_detected": "Zone detected, braking begins", "reduced_speed": "Reduced speed reached",
 }  # fmt: skip
 VIEW = PictureSettings(along=70.0, across=44.0, pixels=1100)
+WIDE = PictureSettings(along=110.0, across=40.0, pixels=1100, ahead=40.0)
+"""For what is far ahead as it begins: whom one overtakes, the zone one brakes for."""
+FAR = frozenset(("overtaking_begins", "zone_detected"))
 
 
 def instants(log: Log) -> dict[str, Instant]:
-    """Event -> what is drawn at it, the first of each name."""
-    found: dict[str, Instant] = {}
+    """Event -> what is drawn at it, the first of each name; `alongside` is the instant of least clearance while overtaking."""
     footprint = Footprint(**log.run["footprint"])
+    times: dict[str, float] = {}
     for event in events_of(log.run, log.ticks):
-        if event.name not in found:
-            tick = next(item for item in log.ticks if item["time"] == event.time)
-            found[event.name] = Instant(observation_of(tick), footprint, _plan_at(log, event.time))
-    return found
+        times.setdefault(event.name, event.time)
+    nearest = min(_passing(log), default=None)
+    if nearest is not None and "back_in_lane" in times:
+        times["alongside"] = nearest[1]
+    by_time = {tick["time"]: tick for tick in log.ticks}
+    return {
+        name: Instant(observation_of(by_time[time]), footprint, _plan_at(log, time)) for name, time in sorted(times.items(), key=lambda item: item[1])
+    }  # fmt: skip
+
+
+def _passing(log: Log) -> Iterator[tuple[float, float]]:
+    """Clearance and time, for each bicycle at each tick of an overtaking."""
+    for tick in log.ticks:
+        if tick["state"].startswith("overtaking."):
+            yield from ((track["clearance"], tick["time"]) for track in tick["tracks"] if track["kind"] == "bicycle")
 
 
 def draw_events(drawn: Mapping[str, Instant], road_map: RoadMap, folder: Path) -> tuple[Path, ...]:
@@ -42,7 +56,7 @@ def draw_events(drawn: Mapping[str, Instant], road_map: RoadMap, folder: Path) -
     folder.mkdir(parents=True, exist_ok=True)
     for name, instant in drawn.items():
         files.append(folder / f"scene-{name.replace('_', '-')}.png")
-        draw_scene(files[-1], road_map, instant, title=WORDS[name], settings=VIEW)
+        draw_scene(files[-1], road_map, instant, title=WORDS[name], settings=WIDE if name in FAR else VIEW)
     return tuple(files)
 
 

@@ -64,7 +64,7 @@ VARIANTS: tuple[Variant, ...] = (
     Variant("cyclist-2023", replace(_WIDE, start=_2023), Expectation(
         "must change lanes to pass: 21760(c) as of 2023-01-01", OVERTAKES, ("CVC 21760(c)",), passes="next_lane",
     )),
-    Variant("solid-line", replace(_CYCLIST, divider="double_solid", width=3.4), Expectation(
+    Variant("solid-line", replace(_CYCLIST, divider="double_solid", width=3.4, beside=False), Expectation(
         f"{_FOLLOWS}: the double line may not be crossed, the lane leaves no three feet", (), ("CVC 21460(b)", "CVC 21760(c)"),
     )),
     Variant("lane-3.4m", replace(_ONE_LANE, width=3.4), Expectation(
