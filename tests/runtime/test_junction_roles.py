@@ -7,6 +7,7 @@ from regdb_runtime.observation import Indication, Track
 from regdb_runtime.scenes.crossing import Crossings
 from regdb_runtime.scenes.settings import SensorRanges
 from regdb_runtime.scenes.stretches import Scenes
+from regdb_runtime.scenes.tellers import LIGHT_FACTS, TRACK_FACTS, UNTOLD
 from small_worlds import APPROACH, LEFT, LIGHT, RIGHT, STOP, Street, car, cross, told, worst
 
 NORTH, SOUTH, WEST = math.pi / 2, -math.pi / 2, math.pi
@@ -174,3 +175,18 @@ def test_a_right_turn_on_red_from_stop_to_release() -> None:
     assert worst(street.stretches(STOP, RIGHT), STOP, RIGHT, **enters) == "legal"
     waiting = {"speed": 0.0, "enters_intersection": False, "enters_crosswalk": False}
     assert worst(street.stretches(STOP, STOP)[:1], STOP, STOP, **waiting) == "legal"
+
+
+def test_every_role_is_told_somewhere() -> None:
+    """What is claimed for tracked road users is really filled, in one small world or another."""
+    street = Street(cross(), WAYS["right"])
+    street.see(190.0, 2.0, [car("lead", -4.0, -1.75, turn_signal="off"), car("rider", -17.0, -4.2, kind="bicycle")], lights=RED)
+    found = set(street.first(APPROACH, RIGHT).roles)
+    street.see(100.0, 12.0, [car("rider", -80.0, -3.0, speed=4.0, kind="bicycle"), car("b", -20.0, 1.75, WEST, 5.0)])
+    found |= set(street.first(passes="rider", passing_side="left").roles)
+    call = {"hazard_kind": "emergency", "warning_lights": "emergency_lights"}
+    street.see(100.0, 12.0, [car("engine", -60.0, -1.75, **call)])
+    found |= set(street.first().roles)
+    assert found >= TRACK_FACTS - {"oncoming.clear_for_passing"}
+    assert found >= LIGHT_FACTS
+    assert not found & UNTOLD.keys()

@@ -281,3 +281,15 @@ def test_time_in_roles_is_now() -> None:
     street.see(50.0, 7.0, [car("a", 90.0, -1.75)], clock=NOON)
     roles = street.first().roles
     assert (roles["clock.time"], roles["clock.darkness"], roles["ego.speed"]) == (12 * 3600, False, 7.0)
+
+
+def test_room_beyond_the_rails() -> None:
+    rails = Zone("rails", "rail", around(150.0, 154.0), {"rail.signal_device": True})
+    street = with_map(Street(road(), ("main.e.1",)), zones=(rails,))
+    street.see(60.0, 10.0)
+    assert told(street.first(), "rail.exit_blocked") is False
+    street.see(140.0, 5.0, [car("queue", 158.0, -1.75, speed=0.0)])
+    assert told(street.first(), "rail.exit_blocked") is True
+    assert judge(street.first(), GO, GO, speed=5.0, enters_rail_crossing=True).verdict == "illegal"
+    street.see(140.0, 5.0, [car("queue", 166.0, -1.75, speed=0.0)])
+    assert told(street.first(), "rail.exit_blocked") is False

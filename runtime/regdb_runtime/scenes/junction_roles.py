@@ -13,7 +13,7 @@ from regdb_runtime.scenes.look import Look
 
 NOBODY_CROSSING: Mapping[str, Value] = {
     "cross_traffic.hazard": False, "cross_traffic.in_intersection": False, "cross_traffic.arrived_together": False, "cross_traffic.on_right": False,
-    "oncoming.turning_across": False, "oncoming.hazard": False, "intersection.exit_blocked": False,
+    "oncoming.turning_across": False, "oncoming.hazard": False, "intersection.exit_blocked": False, "rail.exit_blocked": False,
 }  # fmt: skip
 """Away from junctions, for a manoeuvre that turns nowhere."""
 SLOW = 2.0
@@ -51,7 +51,10 @@ def junction_roles(look: Look, entering: Entering, turns: bool) -> dict[str, Val
     moving = _movement(look, entering, turns)
     if moving is not None:
         facts["movement.hazard"] = moving
-    return facts | _exit(look, entering)
+    if entering.junction.control in ("signal", "all_way_stop"):
+        facts["approaching_vehicle.controlled"] = True
+    blocked = exit_blocked(look, entering.junction.exit)
+    return facts if blocked is None else facts | {"intersection.exit_blocked": blocked}
 
 
 def _approaches(look: Look, item: Arriving) -> bool:
@@ -117,12 +120,11 @@ def _together(look: Look, entering: Entering, cross: Sequence[Arriving]) -> dict
     return {"cross_traffic.arrived_together": bool(waiting), "cross_traffic.on_right": any(way.bearing > 0.0 for way in waiting)}
 
 
-def _exit(look: Look, entering: Entering) -> dict[str, Value]:
-    """Whether room for the vehicle is left beyond the junction: nobody slow stands where it would come to stand."""
-    beyond = entering.junction.exit
+def exit_blocked(look: Look, beyond: float) -> bool | None:
+    """Whether no room for the vehicle is left beyond a station: somebody slow stands where it would come to stand; None: too far to be seen."""
     room = beyond + look.footprint.length + look.settings.exit_margin
     for item in look.around.among(*look.path_strip):
         there = item.track.kind != "pedestrian" and beyond - item.track.length < item.rear < room
         if there and item.front > look.around.front and abs(item.along) < SLOW:
-            return {"intersection.exit_blocked": True}
-    return {"intersection.exit_blocked": False} if room - look.around.front <= look.ranges.vehicles else {}
+            return True
+    return False if room - look.around.front <= look.ranges.vehicles else None

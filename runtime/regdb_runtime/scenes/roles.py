@@ -17,11 +17,12 @@ from regdb_runtime.scenes.crossing import Crossings
 from regdb_runtime.scenes.history import History
 from regdb_runtime.scenes.instant import Instant
 from regdb_runtime.scenes.junction_facts import destination_facts
-from regdb_runtime.scenes.junction_roles import NOBODY_CROSSING, TURNS, Entering, junction_roles
+from regdb_runtime.scenes.junction_roles import NOBODY_CROSSING, TURNS, Entering, exit_blocked, junction_roles
 from regdb_runtime.scenes.lane_facts import target_facts, turn_facts
 from regdb_runtime.scenes.light_facts import light_facts
 from regdb_runtime.scenes.look import Look, lanes_of, strips
 from regdb_runtime.scenes.merging import merge
+from regdb_runtime.scenes.pieces import Band
 from regdb_runtime.scenes.traffic_roles import traffic_roles
 from regdb_runtime.scenes.walkers import walker_roles
 
@@ -29,6 +30,7 @@ if TYPE_CHECKING:
     from regdb_runtime.scenes.stretches import Scenes
 
 Measures = Mapping[str, Mapping[str, float]]
+NOBODY_AT_JUNCTION = tuple(name for name in NOBODY_CROSSING if not name.startswith("rail."))
 BEYOND_EXIT = 15.0
 """Metres beyond a junction within which a crosswalk belongs to it."""
 
@@ -215,12 +217,14 @@ class Viewpoint:
         facts = {**self.everywhere, **walks}
         if part.stage != "road":
             if self.at_junction:
-                for name in (*NOBODY_CROSSING, "movement.hazard"):  # what the junction leaves open is open
+                for name in (*NOBODY_AT_JUNCTION, "movement.hazard"):  # what the junction leaves open is open
                     facts.pop(name, None)
             facts |= self.at_junction
             if self.target is not None and facts.get("target_lane.hazard") is True:
                 facts["movement.hazard"] = True
             facts |= self._turn_on(part, standing)
+        if part.rail is not None and part.rail_station is not None and self.instant.eye.has_tracks:
+            facts |= self._rail_exit(part.rail, part.rail_station)
         if part.stage == "approach":
             facts |= self.signal
             facts["intersection.distance"] = 0.0
@@ -235,6 +239,12 @@ class Viewpoint:
         if lacking is not None:
             facts["plan.lacks_due_care"] = lacking
         return OnPart(facts, crosswalk, clear)
+
+    def _rail_exit(self, rail: Band, station: float) -> dict[str, Value]:
+        """Whether room is left beyond the rails."""
+        beyond = next((end for start, end, band in self.scenes.courses.rails(self.maneuver.lane_path) if band is rail and start == station), station)
+        blocked = exit_blocked(self.look, beyond)
+        return {} if blocked is None else {"rail.exit_blocked": blocked}
 
     def _turn_on(self, part: Part, standing: Mapping[str, Value]) -> Mapping[str, Value]:
         if self._turned is None or self._turned[0] is not part.lane:

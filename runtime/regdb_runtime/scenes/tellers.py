@@ -27,7 +27,7 @@ TRACK_FACTS: frozenset[str] = frozenset((
     "ego.followers_queued", "ego.left_of_slower_traffic",
     "emergency_vehicle.ahead_responding", "emergency_vehicle.approaching", "emergency_vehicle.distance", "emergency_vehicle.present",
     "follower.present", "intersection.exit_blocked",
-    "lane.same_direction_available", "lead.distance", "lead.no_room_to_enter", "lead.present", "lead.speed", "lead.turning_left",
+    "lane.same_direction_available", "lead.distance", "lead.present", "lead.speed", "lead.turning_left",
     "motorcycle.lane_shared", "motorcycle.present", "movement.hazard", "obstruction.ahead",
     "oncoming.clear_for_passing", "oncoming.distance", "oncoming.distance_at_return", "oncoming.hazard", "oncoming.meeting",
     "oncoming.turning_across", "oncoming.within_100_ft", "other.may_be_affected", "parked_vehicle.present",
@@ -69,6 +69,7 @@ MANEUVER_FACTS: frozenset[str] = frozenset((
 
 UNTOLD: Mapping[str, str] = MappingProxyType({
     "ego.cruising_notice": "papers that officers hand over do not reach the planner",
+    "lead.no_room_to_enter": "how much room another needs to enter is a judgement, and no interpretation decides it yet",
     "emergency_geofence.age": "no operator's message reaches the planner; without one there is no age",
 })  # fmt: skip
 """Facts that nobody tells, and why; they are unknown, or what the vocabulary assumes of them."""
@@ -107,5 +108,5 @@ def eye_facts(vocabulary: Vocabulary) -> frozenset[str]:
     """The facts of perception that only something that looks and reads can tell: signs, work zones, people who direct traffic, school buses
     and their signals, children on their way to school, kerb paint, weather, surface and sight. A fact new to the vocabulary is among them
     until it is told otherwise, so that it stays unknown rather than assumed."""
-    told = LIGHT_FACTS | MAP_FACTS | TRACK_FACTS | JUDGED_FACTS
+    told = LIGHT_FACTS | MAP_FACTS | TRACK_FACTS | JUDGED_FACTS | UNTOLD.keys()
     return frozenset(fact.name for fact in vocabulary if fact.source == "perception" and fact.name not in told)

@@ -7,11 +7,12 @@ from collections.abc import Iterable
 from regdb.vocabulary import Value
 from regdb_runtime.maps.road_map import Side
 from regdb_runtime.scenes.around import Beside
-from regdb_runtime.scenes.lane_facts import is_for_traffic
+from regdb_runtime.scenes.lane_facts import is_for_traffic, lane_kind
 from regdb_runtime.scenes.look import Look, Strip
 
 IMPASSABLE = frozenset(("double_solid", "solid_dashed", "curb"))
 """Markings and kerbs over which a change of lane is not practicable."""
+SIDES: tuple[Side, Side] = ("right", "left")
 HUNDRED_FEET = 30.48
 
 
@@ -19,7 +20,7 @@ def traffic_roles(look: Look) -> dict[str, Value]:
     """Facts of everybody along the road that do not depend on a junction."""
     return {
         **_ahead(look), **_behind(look), **_bicycles(look), **_stationary(look), **_emergency(look), **_oncoming(look), **_present(look),
-        **_other_lanes(look),
+        **_other_lanes(look), **_two_wheelers(look),
     }  # fmt: skip
 
 
@@ -70,6 +71,20 @@ def _bicycles(look: Look) -> dict[str, Value]:
     right, left = look.own_strip[0] - look.settings.beside_lane, look.own_strip[1] + 0.5
     ahead = [item for item in look.around.among(right, left) if item.track.kind == "bicycle" and item.along > -look.settings.standstill]
     return {"bicycle.ahead": any(item.front > look.around.front and item.rear - look.around.front <= look.ranges.bicycles for item in ahead)}
+
+
+def _two_wheelers(look: Look) -> dict[str, Value]:
+    """A bicycle in a bicycle lane beside the own lane, or in the target if that is one, near enough to be affected; a motorcycle alongside."""
+    strips = [found[1] for side in SIDES if (found := look.strip_beside(side)) is not None and lane_kind(found[0]) == "bicycle"]
+    if look.target is not None and look.target_strip is not None and lane_kind(look.target) == "bicycle":
+        strips.append(look.target_strip)
+    near, affected = look.around, look.settings.affected
+    riding = any(
+        item.track.kind == "bicycle" and item.front > near.rear - affected and item.rear < near.front + affected
+        for strip in strips for item in near.among(*strip)
+    )  # fmt: skip
+    shared = any(item.track.kind == "motorcycle" and item.front > near.rear and item.rear < near.front for item in near.among(*look.own_strip))
+    return {"bicycle.in_bicycle_lane": riding, "motorcycle.lane_shared": shared}
 
 
 def _stationary(look: Look) -> dict[str, Value]:
