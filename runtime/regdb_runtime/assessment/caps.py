@@ -34,7 +34,7 @@ class Caps:
     def __init__(self, settings: AssessmentSettings, profile: Interpretation | None) -> None:
         self.settings, self.profile = settings, profile
         self._known: dict[tuple[object, ...], tuple[PreparedScene, Cap | None]] = {}
-        self._facts: dict[int, tuple[tuple[Regulation, ...], tuple[str, ...]]] = {}
+        self._facts: dict[int, tuple[tuple[Regulation, ...], frozenset[str]]] = {}
 
     def of(self, maneuver: Maneuver, stretches: Sequence[Stretch], shared: Mapping[str, Value]) -> tuple[SpeedCap, ...]:
         """The caps along the path; neighbouring stretches with the same one are joined. Stretches without limit have none."""
@@ -54,7 +54,8 @@ class Caps:
     def _strictest(self, maneuver: Maneuver, stretch: Stretch, shared: Mapping[str, Value]) -> Cap | None:
         """The law's, remembered, and what the profile asks."""
         rules = stretch.view.concerned(maneuver.current, maneuver.next)
-        told = tuple((name, shared.get(name, stretch.roles.get(name))) for name in self._asked_of(rules))
+        asked, roles = self._asked_of(rules), stretch.roles
+        told = frozenset((name, shared.get(name, roles.get(name))) for name in asked & (roles.keys() | shared.keys()))
         key = id(stretch.prepared), id(rules), told
         held = self._known.get(key)
         if held is None or held[0] is not stretch.prepared:
@@ -63,11 +64,11 @@ class Caps:
             held = self._known[key] = stretch.prepared, self._of_law(maneuver, stretch, shared)
         return min((cap for cap in (held[1], self._seen_clear(stretch)) if cap is not None), default=None)
 
-    def _asked_of(self, rules: tuple[Regulation, ...]) -> tuple[str, ...]:
+    def _asked_of(self, rules: tuple[Regulation, ...]) -> frozenset[str]:
         """Facts on which speed limits among some rules hang, through whatever defeats them too."""
         held = self._facts.get(id(rules))
         if held is None or held[0] is not rules:
-            held = self._facts[id(rules)] = rules, tuple(sorted(_facts_of_limits(rules)))
+            held = self._facts[id(rules)] = rules, frozenset(_facts_of_limits(rules))
         return held[1]
 
     def _of_law(self, maneuver: Maneuver, stretch: Stretch, shared: Mapping[str, Value]) -> Cap | None:

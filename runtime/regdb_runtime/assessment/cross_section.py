@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
+from functools import cached_property
 from itertools import pairwise
 from weakref import WeakKeyDictionary
 
@@ -50,16 +51,26 @@ class CrossSections:
     strips: Floats
     kinds: dict[str, Floats]
 
+    @cached_property
+    def across(self) -> Floats:
+        """Right edge, dividers from the right, centre and left edge, one below the other (B + 3, G)."""
+        return np.vstack((self.right_edge[None], self.dividers, self.center[None], self.left_edge[None]))
+
+    @cached_property
+    def has_opposing(self) -> bool:
+        """Whether there is a half for opposing traffic anywhere along the path."""
+        return bool(np.isfinite(self.opposing).any())
+
     def at(self, lines: Floats, index: tuple[NDArray[np.intp], Floats]) -> Floats:
         """Lines (..., G) at stations given as `columns` gives them: (..., *stations.shape)."""
         lower, share = index
-        found = lines[..., lower]
-        found += (lines[..., lower + 1] - found) * share
+        found = lines.take(lower, axis=-1)
+        found += (lines.take(lower + 1, axis=-1) - found) * share
         return np.asarray(found)
 
     def columns(self, stations: Floats) -> tuple[NDArray[np.intp], Floats]:
         """Grid columns below stations and the share of the way to the next, both of the stations' shape."""
-        place = np.clip(stations / STEP, 0.0, self.center.shape[0] - 1.001)
+        place = np.minimum(np.maximum(stations / STEP, 0.0), self.center.shape[0] - 1.001)
         lower = place.astype(np.intp)
         return lower, place - lower
 

@@ -23,19 +23,18 @@ def measure(
     station, tolerance = candidates.station[rows], settings.line_tolerance
     index = sections.columns(station)
     left, right = plans.left - tolerance, plans.right + tolerance
-    dividers = sections.at(sections.dividers, index)
-    center = sections.at(sections.center, index)
+    lines = sections.at(sections.across, index)
+    right_edge, dividers, center, left_edge = lines[0], lines[1:-2], lines[-2], lines[-1]
     on_divider = ((right < dividers) & (left > dividers)).any(axis=0)
     over_center = left > center
     straddled = over_center & (right < center)
     columns["plan.crosses_marking"] = truth((on_divider | straddled).any(axis=1))
     columns["plan.drives_left_of_center"] = truth(over_center.any(axis=1))
-    off = (right < sections.at(sections.right_edge, index)) | (left > sections.at(sections.left_edge, index))
-    columns["plan.leaves_roadway"] = truth(off.any(axis=1))
+    columns["plan.leaves_roadway"] = truth(((right < right_edge) | (left > left_edge)).any(axis=1))
     changing = maneuver.target_lane is not None and maneuver.target_lane != maneuver.lane
     columns["plan.straddles_lanes"] = truth(np.zeros(len(rows)) if changing else _stays_on(np.asarray(on_divider)))
-    steps = np.diff(station, axis=1)
-    if np.isfinite(sections.opposing).any():
+    steps = station[:, 1:] - station[:, :-1]
+    if sections.has_opposing:
         columns["plan.distance_in_opposing_lane"] = number(_driven(over_center, steps), settings.decimals)
     for kind, fact in (("bicycle_lane", "plan.distance_in_bicycle_lane"), ("sidewalk", "plan.uses_sidewalk")):
         if kind in sections.kinds:

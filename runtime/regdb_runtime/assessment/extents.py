@@ -31,9 +31,12 @@ def extents(candidates: Candidates, rows: NDArray[np.intp], path: ReferencePath,
     turn of 10 m radius that leaves less than 0.1 m, on roads of more than 50 m radius less than 4 mm.
     """
     station, offset, heading = candidates.station[rows], candidates.offset[rows], candidates.heading[rows]
-    within = np.clip(station, path.start, path.end)
-    turned = heading - path.heading(within)
-    bend = path.curvature(within) * (0.5 * footprint.front**2)
+    table = path.tabulated
+    place = np.minimum(np.maximum(station, path.start), path.end) - table.first
+    index = np.rint(place / table.step).astype(np.intp)
+    curvature = table.curvature.take(index)
+    turned = heading - table.heading.take(index) - (place - index * table.step) * curvature
+    bend = curvature * (0.5 * footprint.front**2)
     sine, cosine = np.sin(turned), np.cos(turned)
     ahead, behind = footprint.front * sine - bend, -footprint.rear_overhang * sine
     half = footprint.width / 2 * np.abs(cosine)

@@ -81,7 +81,7 @@ class Judging:
         if len(rows) <= 1:
             return
         stretch = self.stretches[index]
-        shared = Plan(self.maneuver.current, self.maneuver.next, {**stretch.roles, **facts.shared})
+        shared = Plan(self.maneuver.current, self.maneuver.next, {**stretch.roles, **facts.shared, **facts.of_stretch[index].shared})
         situation = Situation(stretch.view.circumstances.vocabulary, stretch.scene, shared)
         coded, lasting = codes(self.distinctions[index], facts, index, situation)
         kinds, first, places = np.unique(coded[rows], return_index=True, return_inverse=True)

@@ -20,7 +20,7 @@ from regdb.vocabulary import Value
 from regdb_runtime.assessment import driven_over, judged_facts, others, passing
 from regdb_runtime.assessment.cross_section import CrossSections
 from regdb_runtime.assessment.extents import Extents, extents
-from regdb_runtime.assessment.measured import Bools, Column, PlanFacts, number, truth
+from regdb_runtime.assessment.measured import Bools, Column, OfStretch, PlanFacts, number, truth
 from regdb_runtime.assessment.others import Other
 from regdb_runtime.assessment.passing import Passing
 from regdb_runtime.assessment.settings import AssessmentSettings
@@ -92,8 +92,8 @@ def measure(what: Measuring, candidates: Candidates, rows: NDArray[np.intp]) -> 
     passing.measure(columns, what.passing, plans, speed, step)
     _following(columns, what, plans, speed, step)
     reached, of_stretch = _by_stretch(what, plans, speed)
-    within = [(plans.front >= stretch.start) & (plans.front < stretch.end) for stretch in what.stretches]
-    return PlanFacts(what.shared, columns, of_stretch, reached, len(rows), speed, within)
+    borders = tuple((stretch.start, stretch.end) for stretch in what.stretches)
+    return PlanFacts(what.shared, columns, of_stretch, reached, len(rows), speed, plans.front, borders)
 
 
 def _speeds(columns: dict[str, Column], candidates: Candidates, rows: NDArray[np.intp], settings: AssessmentSettings) -> None:
@@ -123,31 +123,49 @@ def _following(columns: dict[str, Column], what: Measuring, plans: Extents, spee
             columns["lead.following_unsafe"] = column
 
 
-def _by_stretch(what: Measuring, plans: Extents, speed: Floats) -> tuple[Bools, list[dict[str, Column]]]:
-    """Whether each plan reaches each stretch, and what it does there."""
-    front, settings = plans.front, what.settings
+LINES: tuple[tuple[str, str], ...] = (
+    ("plan.enters_intersection", "line"), ("plan.enters_crosswalk", "crosswalk"), ("plan.enters_rail_crossing", "rail"),
+    ("plan.passes_school_bus", "bus"),
+)  # fmt: skip
+"""Facts that say whether the front bumper passes a place, and the name of that place in a stretch."""
+
+
+def _by_stretch(what: Measuring, plans: Extents, speed: Floats) -> tuple[Bools, list[OfStretch]]:
+    """Whether each plan reaches each stretch, and what it does there; nothing is worked out for stretches that none reaches."""
+    front = plans.front
     last = front[:, -1]
-    reached = np.empty((len(what.stretches), front.shape[0]), dtype=np.bool_)
-    found: list[dict[str, Column]] = []
-    sight = judged_facts.decided_by(what.profile, "speed.unsafe_for_conditions")
+    farthest = float(last.max())
+    reached = np.zeros((len(what.stretches), front.shape[0]), dtype=np.bool_)
+    found: list[OfStretch] = []
     for index, stretch in enumerate(what.stretches):
-        reached[index] = (last >= stretch.start) if index and not (what.maneuver.commits and stretch.line is not None) else True
+        reached[index] = (last >= stretch.start) if index else True
+        if index and farthest < stretch.start:
+            found.append(OfStretch({}, {}))
+            continue
         fastest = _fastest(front, speed, stretch.start if index else -np.inf, stretch.end if index + 1 < len(what.stretches) else np.inf)
-        here = {"plan.speed": number(np.where(reached[index], fastest, np.nan), settings.decimals)}
-        for fact, line in (
-            ("plan.enters_intersection", stretch.line), ("plan.enters_crosswalk", stretch.crosswalk),
-            ("plan.enters_rail_crossing", stretch.rail), ("plan.passes_school_bus", stretch.bus),
-        ):  # fmt: skip
-            here[fact] = truth(np.zeros(len(last)) if line is None else last > line + settings.line_tolerance)
-        if what.maneuver.commits and stretch.line is not None:
-            here["plan.enters_intersection"] = truth(np.ones(len(last)))
-        if sight is not None:
-            seen = stretch.measures.get("speed.unsafe_for_conditions", {}).get("sight_distance", settings.sensing_range)
-            column = judged_facts.too_fast_to_stop(sight, np.nan_to_num(here["plan.speed"].values), seen)
-            if column is not None:
-                here["speed.unsafe_for_conditions"] = column
-        found.append(here)
+        found.append(_in_stretch(what, stretch, np.where(reached[index], fastest, np.nan), last))
     return reached, found
+
+
+def _in_stretch(what: Measuring, stretch: Stretch, fastest: Floats, last: Floats) -> OfStretch:
+    settings = what.settings
+    columns: dict[str, Column] = {"plan.speed": number(fastest, settings.decimals)}
+    shared: dict[str, Value] = {}
+    for fact, name in LINES:
+        line = getattr(stretch, name)
+        if line is None:
+            shared[fact] = False
+        elif what.maneuver.commits and name == "line":
+            shared[fact] = True
+        else:
+            columns[fact] = truth(last > line + settings.line_tolerance)
+    decision = judged_facts.decided_by(what.profile, "speed.unsafe_for_conditions")
+    if decision is not None and stretch.roles.get("speed.unsafe_for_conditions") is not False:
+        seen = stretch.measures.get("speed.unsafe_for_conditions", {}).get("sight_distance", settings.sensing_range)
+        column = judged_facts.too_fast_to_stop(decision, np.nan_to_num(columns["plan.speed"].values), seen)
+        if column is not None:
+            columns["speed.unsafe_for_conditions"] = column
+    return OfStretch(shared, columns)
 
 
 def _fastest(front: Floats, speed: Floats, start: float, end: float) -> Floats:
@@ -156,10 +174,13 @@ def _fastest(front: Floats, speed: Floats, start: float, end: float) -> Floats:
     Between instants the speed is taken to change evenly, so what a plan still has on crossing the border counts. The speed at the first
     instant is a fact, no plan; it does not count.
     """
+    first, last = float(front[:, 0].min()), float(front[:, -1].max())
+    if start <= first and last < end:
+        return np.asarray(speed[:, 1:].max(axis=1))
     inside = (front[:, 1:] >= start) & (front[:, 1:] < end)
     found = np.where(inside, speed[:, 1:], -np.inf).max(axis=1)
     for border in (start, end):
-        if np.isfinite(border):
+        if first < border <= last:
             found = np.maximum(found, _speed_at(front, speed, border))
     return np.asarray(found)
 
