@@ -16,9 +16,10 @@ LOWER = 0.5
 
 @dataclass(frozen=True, slots=True)
 class ZoneWatch:
-    """The lower limit ahead for which braking has begun: its rule; empty for none."""
+    """The lower limit ahead for which braking has begun: its rule (empty for none) and its speed; one rule may bring every posted limit."""
 
     rule: str = ""
+    speed: float = 0.0
 
 
 def state_events(before: Memory, after: Memory, offset: float, settled: float) -> tuple[str, ...]:
@@ -40,10 +41,10 @@ def zone_events(watch: ZoneWatch, caps: Sequence[SpeedCap], front: float, accele
     """`zone_seen` when braking for a lower limit ahead begins, `zone_entered` when the front bumper is within it."""
     here = min((cap.speed for cap in caps if cap.start <= front < cap.end), default=float("inf"))
     if watch.rule:
-        if any(cap.rule == watch.rule and cap.start <= front < cap.end for cap in caps):
+        if any(cap.rule == watch.rule and cap.speed <= watch.speed + LOWER and cap.start <= front < cap.end for cap in caps):
             return ZoneWatch(), ("zone_entered",)
         return watch, ()
     lower = min((cap for cap in caps if cap.start > front and cap.speed < here - LOWER), key=lambda cap: cap.start, default=None)
     if lower is not None and acceleration < BRAKES:
-        return ZoneWatch(lower.rule), ("zone_seen",)
+        return ZoneWatch(lower.rule, lower.speed), ("zone_seen",)
     return watch, ()

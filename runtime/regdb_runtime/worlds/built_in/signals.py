@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 
-from regdb_runtime.maps.road_map import Light, RoadMap
+from regdb_runtime.maps.road_map import Floats, Light, RoadMap
 from regdb_runtime.observation import Color, EgoState, Indication, Shape
 
 _SHAPES: Mapping[str, Shape] = {"right": "right_arrow", "left": "left_arrow", "straight": "straight_arrow"}
@@ -34,9 +34,15 @@ class Signals:
         for lane in road_map.lanes.values():
             if lane.junction is not None:
                 for name in lane.lights:
-                    first, second = lane.center[0], lane.center[1]
-                    self._headings[name] = math.atan2(second[1] - first[1], second[0] - first[0])
-                    self._places[name] = (float(first[0]), float(first[1]))
+                    self._place(name, lane.center[0], lane.center[1] - lane.center[0])
+        for lane in road_map.lanes.values():  # maps read from files have a light on the lane that ends at it
+            for name in lane.lights:
+                if name not in self._places:
+                    self._place(name, lane.center[-1], lane.center[-1] - lane.center[-2])
+
+    def _place(self, name: str, at: Floats, course: Floats) -> None:
+        self._headings[name] = math.atan2(course[1], course[0])
+        self._places[name] = (float(at[0]), float(at[1]))
 
     def color(self, light: str, time: float) -> Color:
         """What one head shows."""

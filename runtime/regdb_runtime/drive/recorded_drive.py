@@ -1,0 +1,68 @@
+"""A drive of the planner among recorded traffic: the same loop, log, figures and table as the paper's drive."""
+
+from __future__ import annotations
+
+from contextlib import closing
+from dataclasses import asdict
+from pathlib import Path
+from typing import Any
+
+from regdb.vocabulary import Vocabulary
+from regdb_runtime.database import RegulationDatabase
+from regdb_runtime.drive.figures import Scenes, draw_all
+from regdb_runtime.drive.log import Log, writing
+from regdb_runtime.drive.prepare import PROFILES, Choices
+from regdb_runtime.drive.run import DriveSettings, drive
+from regdb_runtime.drive.scene_pictures import draw_events, instants
+from regdb_runtime.errors import RequestError
+from regdb_runtime.planner import Planner, PlannerSettings
+from regdb_runtime.worlds.plain_form import to_plain
+from regdb_runtime.worlds.recorded import RecordedWorld
+from regdb_runtime.worlds.recorded_spec import RecordedSpec
+
+LOOP = DriveSettings(arrived_within=8.0)
+"""Recorded maps end soon after the junction, so the destination is the route's end itself."""
+
+
+def drive_recorded(spec: RecordedSpec, database: RegulationDatabase, choices: Choices | None = None, told: Any = None) -> Log:
+    """One drive. Raises RequestError, MapError, NoRoute and WorldError for what does not fit together."""
+    choices = choices or Choices("recorded", "default", LOOP)
+    cost = PROFILES.get(choices.profile)
+    if cost is None:
+        raise RequestError(f"there is no profile {choices.profile!r} of the cost; there are: {', '.join(PROFILES)}")
+    database.at(spec.place, spec.start[:10])  # a place or day that is not there is said before the drive
+    settings = PlannerSettings(cost=cost)
+    with closing(RecordedWorld(spec, database.vocabulary)) as world:
+        planner = Planner(database, world.road_map, world.route, world.footprint, settings)
+        about = {
+            "variant": spec.name, "provenance": spec.eye.kind, "lights": lights_said(spec), "world": "recorded", "profile": choices.profile,
+            "seed": 0, "start": spec.start, "place": world.road_map.jurisdiction, "database": database.hash,
+            "interpretation": settings.interpretation, "strategic_period": settings.strategic_period,
+            "weights": asdict(settings.cost.weights), "scene": to_plain(spec),
+            "recording": {"id": world.replay.traffic.id, "seconds": world.replay.ends, "note": "nobody recorded reacts to the ego; who leaves the "
+                          "recording leaves the scene"},
+        }  # fmt: skip
+        return drive(world, planner, about, choices.settings, told)
+
+
+def lights_said(spec: RecordedSpec) -> str:
+    """Where the lights' phases come from: never from the recording."""
+    words = {"none": "none", "nominal": "scripted: the file's nominal plan", "red": "scripted: red first", "green": "scripted: green first"}
+    return words[spec.lights.plan]
+
+
+def write_recorded(log: Log, spec: RecordedSpec, folder: Path) -> tuple[Path, ...]:
+    """`drive.jsonl` and `recorded.json`. Raises LogError when the folder cannot be written."""
+    files = folder / "drive.jsonl", folder / "recorded.json"
+    with writing(files[0]) as out:
+        for record in (log.run, *log.ticks, log.end):
+            out.write(record)
+    files[1].write_text(spec.to_json(), "utf-8")
+    return files
+
+
+def draw_recorded(log: Log, spec: RecordedSpec, vocabulary: Vocabulary, folder: Path) -> tuple[Path, ...]:
+    """The figures, and a picture of the scene at each event, as PNG. Raises MissingExtra without matplotlib."""
+    with closing(RecordedWorld(spec, vocabulary)) as world:
+        road_map, drawn = world.road_map, instants(log)
+    return (*draw_all(log, folder, Scenes(road_map, drawn)), *draw_events(drawn, road_map, folder))
