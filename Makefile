@@ -4,7 +4,7 @@ VENV := .venv
 BIN := $(VENV)/bin
 READY := $(VENV)/.ready
 
-.PHONY: demo test check law bench docs quick clean help
+.PHONY: demo test check law bench docs drives quick clean help
 
 help:
 	@echo "make demo    lint, test and compile the shipped codes, and decide the paper's situations"
@@ -12,6 +12,7 @@ help:
 	@echo "make check   style, types, layers, and everything make law does"
 	@echo "make law     lint, form, tests, boundaries, ledger and mutation score of codes/"
 	@echo "make bench   measure, in ratios of one run, against the marks"
+	@echo "make drives  drive 1,000 random scenes, or those of SEEDS=\"FIRST LAST\", and say what went wrong"
 	@echo "make docs    write the generated pages of docs/reference"
 
 $(READY): pyproject.toml
@@ -46,6 +47,10 @@ law: $(READY)
 
 bench: $(READY)
 	$(BIN)/python bench/run.py
+
+SEEDS ?= 0 1000
+drives: $(READY)
+	$(BIN)/python tests/random_drives.py $(SEEDS) --jobs 2 --shrink -o out/drives
 
 docs: $(READY)
 	$(BIN)/python docs/generate.py
