@@ -28,6 +28,7 @@ from regdb_runtime.strategy.planner_settings import PlannerSettings as PlannerSe
 from regdb_runtime.trajectory import Trajectory
 
 if TYPE_CHECKING:
+    from regdb_runtime.assessment.assessed import Assessed
     from regdb_runtime.database import RegulationDatabase
     from regdb_runtime.maps.road_map import RoadMap
     from regdb_runtime.planning.prediction import Predictor
@@ -76,6 +77,15 @@ class Planner:
             return self._drive(observation, report)
         except Exception as error:  # noqa: BLE001  # fails closed: braking, and the reason
             return self._fall_back(observation, report, _said(error))
+
+    def judge(self, observation: Observation, plan: Trajectory) -> Assessed:
+        """The law on a plan made elsewhere, for the state in force after `step` of the same observation: rank, verdicts, and what it breaks.
+
+        `plan`: as `Trajectory`; its stations and offsets are worked out here. Raises RegdbRuntimeError off the road, and RuntimeError before `step`.
+        """
+        if self._mind is None:
+            raise RuntimeError("judge before step: there is no state in force yet")
+        return self._mind.judge(observation, self._memory, plan)
 
     def _drive(self, observation: Observation, report: EmergencyReport) -> Decision:
         mind = self._awake()

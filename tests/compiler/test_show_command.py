@@ -117,7 +117,7 @@ def test_the_machine_whole(show: Any) -> None:
     assert max(map(len, out.splitlines())) <= 80
     data = json.loads(show("states", "--format", "json"))
     assert data["shows"] == "machine"
-    assert [item["name"] for item in data["super_states"]][0] == data["initial"]
+    assert data["super_states"][0]["name"] == data["initial"]
 
 
 def test_the_machine_as_a_diagram_and_nothing_else_as_one(show: Any) -> None:

@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 import pytest
 from regdb_runtime.adapters import ros2
+from regdb_runtime.adapters.commonroad_reactive import RegulationCostFunction
 from regdb_runtime.adapters.opencda import Location, RegulationAgent
 from regdb_runtime.decision import Decision
 from regdb_runtime.emergency import EmergencyReport
@@ -252,3 +253,56 @@ def test_a_vehicle_that_rolls_back_stands_still_for_the_planner() -> None:
     assert ros2.ego_state(message).speed == 0.0
     acceleration = {"accel": {"accel": {"linear": {"x": -1.5}}}}
     assert ros2.ego_state(ODOMETRY, acceleration, "left") == EgoState(10.0, 5.0, pytest.approx(0.7), 8.0, -1.5, 0.05, "left")
+
+
+class TestReactivePlanner:
+    """A `TrajectorySample` and a cost function with CommonRoad's names; the law by a planner that finds fast plans unlawful."""
+
+    class Speeding:
+        """Judges by the top speed: above 15 m/s unlawful, above 10 unknown."""
+
+        def __init__(self) -> None:
+            self.seen: list[Any] = []
+
+        def step(self, observation: Observation) -> Decision:
+            return Recorder(()).step(observation)
+
+        def judge(self, observation: Observation, plan: Trajectory) -> Any:
+            self.seen.append((observation, plan))
+            return SimpleNamespace(rank=2 if plan.speed.max() > 15 else 1 if plan.speed.max() > 10 else 0)
+
+    class Comfort:
+        """As `DefaultCostFunction`: an attribute that the reactive planner sets, and slow plans that cost more."""
+
+        desired_speed = 0.0
+
+        def evaluate(self, trajectory: Any) -> float:
+            return float(1e6 / (1 + trajectory.cartesian.v[0]))
+
+    @staticmethod
+    def sample(speed: float) -> SimpleNamespace:
+        time = np.arange(31) * 0.1
+        zero = np.zeros(31)
+        cartesian = SimpleNamespace(x=speed * time, y=zero, theta=zero, v=zero + speed, a=zero, kappa=zero)
+        return SimpleNamespace(cartesian=cartesian, curvilinear=SimpleNamespace(s=speed * time, d=zero), dt=0.1)
+
+    def test_legality_comes_first_and_the_other_cost_within(self) -> None:
+        planner = self.Speeding()
+        cost = RegulationCostFunction(planner, self.Comfort())
+        cost.observe(Observation(0.0, START, EgoState(0, 0, 0, 5.0)))
+        costs = {speed: cost.evaluate(self.sample(speed)) for speed in (1.0, 9.0, 11.0, 14.0, 16.0, 30.0)}
+        assert sorted(costs, key=costs.__getitem__) == [9.0, 1.0, 14.0, 11.0, 30.0, 16.0]
+        assert [int(value) for value in costs.values()] == [0, 0, 1, 1, 2, 2]
+        assert planner.seen[0][1].time[-1] == pytest.approx(3.0)
+
+    def test_what_the_reactive_planner_sets_reaches_the_cost_within(self) -> None:
+        within = self.Comfort()
+        cost = RegulationCostFunction(self.Speeding(), within)
+        assert hasattr(cost, "desired_speed")
+        assert not hasattr(cost, "w_a")
+        cost.desired_speed = 12.0
+        assert within.desired_speed == 12.0
+
+    def test_before_an_observation_there_is_no_cost(self) -> None:
+        with pytest.raises(RuntimeError, match="before observe"):
+            RegulationCostFunction(self.Speeding(), self.Comfort()).evaluate(self.sample(5.0))

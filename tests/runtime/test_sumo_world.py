@@ -9,13 +9,14 @@ from typing import Any
 
 import numpy as np
 import pytest
+from crossing_streets import ALL_WAY, HALF, ROADS, SIGNALS, scene
 from regdb_runtime.errors import MissingExtra, WorldError
 from regdb_runtime.geometry import boxes, distance
 from regdb_runtime.observation import EgoState, Track
 from regdb_runtime.trajectory import Trajectory
 from regdb_runtime.worlds.built_in.build import shipped_vocabulary
 from regdb_runtime.worlds.road_builder import build_road_map
-from regdb_runtime.worlds.road_spec import Arm, JunctionSpec, Piece, Pose, RoadSpec, SignalPhase, StreetsSpec
+from regdb_runtime.worlds.road_spec import JunctionSpec, SignalPhase, StreetsSpec
 from regdb_runtime.worlds.scene_spec import CyclistSpec, EgoSpec, FlowSpec, ParkedSpec, PedestrianSpec, SceneSpec, VehicleSpec
 from regdb_runtime.worlds.sumo import traffic
 from regdb_runtime.worlds.sumo.net_layout import layout
@@ -23,26 +24,6 @@ from regdb_runtime.worlds.sumo.net_writer import net_xml
 from regdb_runtime.worlds.sumo.world import SumoWorld
 
 from regdb.vocabulary import Vocabulary
-
-HALF = 14.0
-"""From the junction's middle to the mouths of its roads, metres."""
-
-
-def _road(name: str, degrees: float, **more: Any) -> RoadSpec:
-    """A road of 200 m away from the junction towards `degrees`."""
-    turn = math.radians(degrees)
-    return RoadSpec(name, (Piece(200.0),), Pose(HALF * math.cos(turn), HALF * math.sin(turn), degrees), 1, 1, **more)
-
-
-ROADS = tuple(_road(name, degrees) for name, degrees in (("east", 0), ("north", 90), ("west", 180), ("south", 270)))
-SIGNALS = JunctionSpec(
-    "cross", tuple(Arm(road.id, "start") for road in ROADS), "signal", (SignalPhase(("n", "s"), 20.0), SignalPhase(("e", "w"), 20.0)))  # fmt: skip
-ALL_WAY = JunctionSpec("cross", tuple(Arm(road.id, "start") for road in ROADS), "all_way_stop")
-
-
-def scene(junction: JunctionSpec, **more: Any) -> SceneSpec:
-    """The ego stands on the south road, out of everybody's way."""
-    return SceneSpec("sumo", StreetsSpec(ROADS, (junction,)), EgoSpec("south.n.1", 10.0), **more)
 
 
 @pytest.fixture

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from regdb_runtime.assessment.assessed import Assessed
 from regdb_runtime.assessment.assessor import Assessor
 from regdb_runtime.decision import CandidateReport, Flag
 from regdb_runtime.maneuver import Maneuver
@@ -15,6 +16,7 @@ from regdb_runtime.planning.choice import choose
 from regdb_runtime.planning.contacts import Sweeper
 from regdb_runtime.planning.prediction import ConstantVelocity, Predictions, Predictor
 from regdb_runtime.scenes.history import History
+from regdb_runtime.scenes.stretch import Stretch
 from regdb_runtime.scenes.stretches import Scenes
 from regdb_runtime.strategy.evaluation import Evaluated, Evaluator, failed
 from regdb_runtime.strategy.events import ZoneWatch, state_events, zone_events
@@ -23,6 +25,7 @@ from regdb_runtime.strategy.maneuvers import Strategist
 from regdb_runtime.strategy.memory import Memory
 from regdb_runtime.strategy.paths import paths_of
 from regdb_runtime.strategy.picture import Picture
+from regdb_runtime.strategy.placing import placed
 from regdb_runtime.strategy.planner_settings import PlannerSettings
 from regdb_runtime.trajectory import Trajectory
 
@@ -58,6 +61,7 @@ class Mind:
         self._times = np.arange(settings.lattice.points, dtype=np.float64) * settings.lattice.step
         self._free_speed: float | None = None
         self._watch = ZoneWatch()
+        self._judged: tuple[Observation, Memory, Maneuver, tuple[Stretch, ...], tuple[Track, ...]] | None = None
 
     @property
     def initial(self) -> str:
@@ -75,6 +79,22 @@ class Mind:
                 return self._choice(picture, memory, own, strategic=False)
         found = self._evaluate(self.strategist.maneuvers(picture), picture, start, predictions)
         return self._choice(picture, memory, found, strategic=True)
+
+    def judge(self, observation: Observation, memory: Memory, plan: Trajectory) -> Assessed:
+        """The law on a plan made elsewhere, for the state in force; contacts and limits of motion are its maker's matter, the law's facts are not.
+
+        `plan` needs `time`, `x`, `y`, `heading`, `speed`, `acceleration`, `jerk` and `curvature`; it is placed on the manoeuvre's path here.
+        """
+        if self._judged is None or self._judged[0] is not observation or self._judged[1] is not memory:
+            picture = self.strategist.picture(observation, memory, self._free_speed)
+            maneuver = self.strategist.own(picture)
+            stretches = self.evaluator.scenes.stretches(observation, maneuver, self.history)
+            self._judged = observation, memory, maneuver, stretches, self._mattering(picture)
+        _, _, maneuver, stretches, tracks = self._judged
+        predictions = self.predictor.predict(tracks, plan.time)
+        candidates = placed(plan, maneuver.lane_path.path)
+        nobody = Sweeper(self.predictor.predict((), plan.time), self.evaluator.footprint)
+        return self.evaluator.assessor.best(maneuver, stretches, candidates, [0], [0.0], observation, predictions, [True], nobody)
 
     def _evaluate(
         self, maneuvers: tuple[Maneuver, ...], picture: Picture, start: EgoState, predictions: Predictions

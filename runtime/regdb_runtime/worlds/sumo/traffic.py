@@ -1,7 +1,6 @@
 """Everybody but the ego and people on foot, driven by SUMO through libsumo; it stands where the built-in world's own traffic stands.
 
-One process runs one simulation, as libsumo has it. SUMO's position of a vehicle is the middle of its front bumper, its angles are degrees
-clockwise from north.
+One process runs one simulation, as libsumo has it.
 """
 
 from __future__ import annotations
@@ -17,7 +16,7 @@ from typing import Any
 
 from regdb_runtime.errors import MissingExtra, WorldError
 from regdb_runtime.maps.road_map import RoadMap
-from regdb_runtime.observation import EgoState, Footprint, Track, TurnSignal
+from regdb_runtime.observation import EgoState, Footprint, Track
 from regdb_runtime.worlds.built_in.lane_tables import LaneTables
 from regdb_runtime.worlds.built_in.mover import Mover, TrafficSettings
 from regdb_runtime.worlds.built_in.people import Pedestrian
@@ -25,15 +24,11 @@ from regdb_runtime.worlds.built_in.signals import Signals
 from regdb_runtime.worlds.built_in.traffic import EgoAhead
 from regdb_runtime.worlds.sumo.net_layout import Link, Node, layout
 from regdb_runtime.worlds.sumo.net_writer import net_xml
+from regdb_runtime.worlds.sumo.terms import ALONG_ROUTE, angle_of, heading_of, move, track_of
 
 EGO = "ego"
 _LATERAL = 0.3
 """Width of SUMO's sublanes, metres: fine enough for a cyclist at the edge of a lane."""
-_ANYWHERE = 2
-"""`keepRoute` of moveToXY: put the vehicle exactly there, on the road or off it."""
-_THERE = 1
-"""The same: put the vehicle on the nearest lane of its route, as far across as it is."""
-_RIGHT_BLINKER, _LEFT_BLINKER, _HAZARD = 1, 2, 4
 _running: list[SumoTraffic] = []
 
 
@@ -109,7 +104,7 @@ class SumoTraffic:
         """One step of SUMO's, with the ego, the people on foot and the lights as they are now. `step` is the settings' own."""
         self._let_in(time)
         self._show_lights(time)
-        self._move("ego", ego.front_bumper(footprint), ego.heading, ego.speed)
+        move(self._sumo.vehicle, EGO, ego.front_bumper(footprint), ego.heading, ego.speed)
         self._block(people)
         self._wish(time)
         self._headings = {name: self._heading(name) for name in self._present()}
@@ -169,7 +164,7 @@ class SumoTraffic:
         if mover.bicycle:
             edge, index = self._edge_of[lane]
             x, y, heading = self._tables[lane].pose(front, mover.resting_offset)
-            sumo.vehicle.moveToXY(name, edge, index, x, y, 90.0 - math.degrees(heading), _THERE)
+            sumo.vehicle.moveToXY(name, edge, index, x, y, angle_of(heading), ALONG_ROUTE)
             sumo.vehicle.setPreviousSpeed(name, mover.speed)
         sumo.vehicle.setParameter(name, "laneChangeModel.lcKeepRight", "0")
         sumo.vehicle.setSpeedFactor(name, mover.scattered)
@@ -230,7 +225,7 @@ class SumoTraffic:
             if name not in self._blockers:
                 self._add_blocker(name, length, width)
             front = x + length / 2 * math.cos(heading), y + length / 2 * math.sin(heading)
-            self._move(name, front, heading, 0.0)
+            move(self._sumo.vehicle, name, front, heading, 0.0)
 
     def _on_lane(self, place: tuple[float, float, float], length: float, width: float) -> bool:
         x, y, _ = place
@@ -247,25 +242,11 @@ class SumoTraffic:
         self._sumo.vehicle.setLaneChangeMode(name, 0)
         self._blockers.add(name)
 
-    def _move(self, name: str, front: tuple[float, float], heading: float, speed: float) -> None:
-        self._sumo.vehicle.moveToXY(name, "", -1, front[0], front[1], 90.0 - math.degrees(heading), _ANYWHERE)
-        self._sumo.vehicle.setSpeed(name, speed)
-
     def _heading(self, name: str) -> float:
-        return math.remainder(math.radians(90.0 - self._sumo.vehicle.getAngle(name)), math.tau)
+        return heading_of(self._sumo.vehicle.getAngle(name))
 
     def _track(self, mover: Mover) -> Track:
-        vehicle, name = self._sumo.vehicle, mover.id
-        front, heading = vehicle.getPosition(name), self._heading(name)
-        turned = math.remainder(heading - self._headings.get(name, heading), math.tau)
-        return Track(
-            name, mover.kind, front[0] - mover.half_length * math.cos(heading), front[1] - mover.half_length * math.sin(heading), heading,
-            vehicle.getSpeed(name), mover.length, mover.width, vehicle.getAcceleration(name), turned / self._settings.step,
-            "off" if mover.bicycle else _signal(vehicle.getSignals(name)), mover.warning_lights, mover.hazard_kind,
-        )  # fmt: skip
-
-
-def _signal(bits: int) -> TurnSignal:
-    if bits & _HAZARD:
-        return "hazard"
-    return "right" if bits & _RIGHT_BLINKER else "left" if bits & _LEFT_BLINKER else "off"
+        heading = self._heading(mover.id)
+        turned = math.remainder(heading - self._headings.get(mover.id, heading), math.tau)
+        lights = mover.warning_lights, mover.hazard_kind
+        return track_of(self._sumo.vehicle, mover.id, mover.kind, (mover.length, mover.width), turned / self._settings.step, lights)
