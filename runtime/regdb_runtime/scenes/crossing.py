@@ -77,6 +77,9 @@ class Crossings:
             if other.junction == junction and lane not in names and not other.kinds & NOT_FOR_TRAFFIC:
                 self._add(road_map, other, planned, entry, parts)
         self._segments = np.vstack(parts) if parts else np.empty((0, 7))
+        ends = self._segments[:, :2] + self._segments[:, 2:4] * self._segments[:, 4:5]
+        corners = np.vstack((self._segments[:, :2], ends)) if parts else np.zeros((1, 2))
+        self._box = (*(corners.min(axis=0) - self.settings.beside_way).tolist(), *(corners.max(axis=0) + self.settings.beside_way).tolist())
         self._last: tuple[object, tuple[Arriving, ...]] = (None, ())
 
     def _add(self, road_map: RoadMap, lane: Lane, planned: Floats, entry: frozenset[str], parts: list[Floats]) -> None:
@@ -105,7 +108,11 @@ class Crossings:
         return self._last[1]
 
     def _arriving(self, tracks: Iterable[Track]) -> tuple[Arriving, ...]:
-        listed = [track for track in tracks if track.kind not in ("pedestrian", "animal", "obstacle")]
+        left, low, right, high = self._box
+        listed = [
+            track for track in tracks
+            if left <= track.x <= right and low <= track.y <= high and track.kind not in ("pedestrian", "animal", "obstacle")
+        ]  # fmt: skip
         if not listed or not len(self._segments):
             return ()
         place = np.array([(track.x, track.y, track.heading) for track in listed])
@@ -187,7 +194,8 @@ def _straightened(line: Floats, bend: float = 0.01) -> Floats:
 
 def _segments(before: Floats, own: Floats, way: int) -> Floats:
     """Straight pieces (k, 7) of a way: x, y, direction, length, station at its start (0 at the junction's edge), number of the way."""
-    line = np.vstack((_straightened(before), own[:, :2])) if len(before) else own[:, :2]
+    inner = _straightened(own[:, :2], 0.08)
+    line = np.vstack((_straightened(before), inner)) if len(before) else inner
     steps = np.diff(line, axis=0)
     lengths = np.hypot(*steps.T)
     keep = lengths > 1e-6
