@@ -3,7 +3,7 @@
 APPLICATION_ID = 0x52474442
 """SQLite's application_id: "RGDB"."""
 
-MAJOR, MINOR = 1, 1
+MAJOR, MINOR = 1, 2
 """Schema version. A reader refuses another major; a minor only adds."""
 
 USER_VERSION = MAJOR * 1000 + MINOR
@@ -63,6 +63,12 @@ TABLES: dict[str, tuple[str, ...]] = {
         text("assumed", null=True), text("assumed_within"), text("assumed_because"), text("quiet", null=True), text("phrases"),
         text("confusables"), text("codes"),
     ),
+    "fact_fusion": (
+        "fact TEXT PRIMARY KEY REFERENCES fact(name)", text("ages"), real("holds_s"), real("holds_m"), real("fresh_s"), real("fresh_m"),
+        "confirmations INTEGER NOT NULL CHECK (confirmations >= 1)", "within_s REAL NOT NULL", "apart_s REAL NOT NULL", flag("replaced"),
+        text("permissive"), real("permissive_above"), real("permissive_below"), text("corroboration"), text("strictest"), real("least"),
+        real("most"), real("step"), text("asks"), text("question"), text("ends"), text("places"), text("because"),
+    ),
     "attribute": (
         "name TEXT PRIMARY KEY", text("kind"), "fact TEXT NOT NULL REFERENCES fact(name)", text("direction"), text("meaning"),
     ),
@@ -116,10 +122,13 @@ TABLES: dict[str, tuple[str, ...]] = {
         "true_when TEXT NOT NULL CHECK (true_when IN ('unsafe', 'safe'))", text("parameters"), text("because"), text("source"),
         "PRIMARY KEY (interpretation, fact)",
     ),
+    "lexicon": (
+        "kind TEXT NOT NULL CHECK (kind IN ('words', 'entails'))", text("name"), text("entries"), "PRIMARY KEY (kind, name)",
+    ),
 }  # fmt: skip
 """Table -> column and constraint clauses. JSON stands in text columns; dates are ISO text, NULL where open."""
 
-SINCE_MINOR = {"interpretation": 1, "interpretation_rule": 1}
+SINCE_MINOR = {"interpretation": 1, "interpretation_rule": 1, "lexicon": 2, "fact_fusion": 2}
 """The minor version that brought a table; all others were there from the first. A file of an earlier minor lacks it."""
 
 INDEXES = {

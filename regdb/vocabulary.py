@@ -7,6 +7,7 @@ import difflib
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
 
+from regdb.fusion_policy import FusionPolicy
 from regdb.units import UnitError, parse_quantity, show_si, unit_named
 
 Value = bool | float | int | str | frozenset[str]
@@ -31,7 +32,11 @@ class Assumption:
 
 @dataclass(frozen=True, slots=True)
 class Fact:
-    """One fact of the scene or plan. `values` are an enumeration's or set's words, `unit` a quantity's usual unit."""
+    """One fact of the scene or plan. `values` are an enumeration's or set's words, `unit` a quantity's usual unit.
+
+    `entails`: boolean facts that are true whenever words reveal this one (true, or any value but none).
+    `fusion`: how statements on it are believed and forgotten; None where nobody but its one teller says anything of it.
+    """
 
     name: str
     kind: str
@@ -44,6 +49,8 @@ class Fact:
     phrases: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
     confusables: tuple[str, ...] = ()
     codes: Mapping[str, str] = field(default_factory=dict)
+    entails: tuple[str, ...] = ()
+    fusion: FusionPolicy | None = None
 
     @property
     def dimension(self) -> str:
@@ -163,9 +170,15 @@ class Attribute:
 
 
 class Vocabulary:
-    """Every fact and attribute by name; the one source for types, completion, prompts and lexicon."""
+    """Every fact and attribute by name; the one source for types, completion, prompts and lexicon.
 
-    def __init__(self, facts: Iterable[Fact] = (), attributes: Iterable[Attribute] = ()) -> None:
+    `words`: classes of words that phrases name in braces; the class `swallow` holds phrases that reveal nothing.
+    """
+
+    def __init__(
+        self, facts: Iterable[Fact] = (), attributes: Iterable[Attribute] = (), words: Mapping[str, tuple[str, ...]] | None = None
+    ) -> None:
+        self.words: Mapping[str, tuple[str, ...]] = words or {}
         self.facts: dict[str, Fact] = {fact.name: fact for fact in facts}
         self.attributes: dict[str, Attribute] = {item.name: item for item in attributes}
 

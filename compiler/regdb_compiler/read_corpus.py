@@ -15,6 +15,7 @@ from regdb_compiler.diagnostics import Diagnostic, Place
 from regdb_compiler.documents.interpretation import InterpretationFile
 from regdb_compiler.entries import CaseEntry, OutlineEntry, SectionEntry
 from regdb_compiler.parse import parse_document
+from regdb_compiler.read_fusion import FusionReader
 from regdb_compiler.read_interpretations import InterpretationEntry, read_interpretation
 from regdb_compiler.read_vocabulary import jurisdictions_of, read_attributes, read_fact, read_jurisdictions, read_states
 from regdb_compiler.source import Mapping as MappingNode
@@ -148,6 +149,8 @@ def _read_vocabulary(reader: _Reader) -> tuple[Vocabulary, dict[str, Place]]:
     places: dict[str, Place] = {}
     bounded: dict[str, Place] = {}
     attributes: list[tuple[str, documents.Attribute, SourceFile]] = []
+    words: dict[str, tuple[str, ...]] = {}
+    fusion = FusionReader()
     for path in (path for folder in reader.folders for path in sorted((folder / "vocabulary").glob("*.yaml"))):
         file = reader.read(path)
         doc, problems = parse_document(documents.VocabularyFile, file)
@@ -170,9 +173,14 @@ def _read_vocabulary(reader: _Reader) -> tuple[Vocabulary, dict[str, Place]]:
                 reader.problems.append(_twice(name, place, first, "attribute"))
                 continue
             attributes.append((name, attribute, file))
+        fusion.take(doc, file, {name for name in doc.facts if name in facts and places[name].path == file.path})
+        for name, members in doc.words.items():
+            words[name] = (*words.get(name, ()), *members)
     read, problems = read_attributes(attributes, facts)
     reader.problems += problems
-    return Vocabulary(facts.values(), read), places
+    facts, problems = fusion.complete(facts)
+    reader.problems += problems
+    return Vocabulary(facts.values(), read, words), places
 
 
 def _key_of(file: SourceFile, *path: str) -> Place:

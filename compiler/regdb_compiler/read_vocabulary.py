@@ -45,7 +45,9 @@ def read_fact(name: str, doc: documents.Fact, file: SourceFile) -> tuple[Fact | 
     wrong = [word for word in phrases if word and word not in (*doc.values, "true", "false")]
     if wrong:
         return None, [_bad(file, "R410", "bad-fact", f"fact `{name}`: phrases for {wrong[0]!r}, which is no value of it", ("facts", name))]
-    fact = Fact(name, doc.type, doc.meaning, doc.source, doc.values, doc.unit, assumption, quiet, phrases, doc.confusables, doc.codes)
+    fact = Fact(
+        name, doc.type, doc.meaning, doc.source, doc.values, doc.unit, assumption, quiet, phrases, doc.confusables, doc.codes, doc.entails
+    )
     return fact, []
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import datetime
 import json
 from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import replace
 from functools import lru_cache
 from typing import Any, TypeVar
 
@@ -17,6 +18,7 @@ from regdb.states import State, StateMachine, SuperState
 from regdb.vocabulary import KINDS, Assumption, Attribute, Fact, Value, Vocabulary
 from regdb_runtime.errors import DatabaseDamaged
 from regdb_runtime.rows_conditions import ConditionReader
+from regdb_runtime.rows_fusion import read_fusion
 
 _FACT = (
     "name", "kind", "meaning", "source", "words", "unit", "assumed", "assumed_within", "assumed_because", "quiet", "phrases",
@@ -40,14 +42,22 @@ def read_meta(tables: Tables) -> dict[str, str]:
 
 def read_vocabulary(tables: Tables) -> Vocabulary:
     """Every fact and attribute. Raises DatabaseDamaged."""
-    facts = [_fact(*row) for row in tables["fact"].select(*_FACT)]
+    lexicon = {(kind, name): tuple(json.loads(entries)) for kind, name, entries in _lexicon(tables)}
+    facts = [_fact(*row, lexicon.get(("entails", row[0]), ())) for row in tables["fact"].select(*_FACT)]
+    policies = read_fusion(tables)
+    facts = [replace(fact, fusion=policies[fact.name]) if fact.name in policies else fact for fact in facts]
     attributes = tables["attribute"].select("name", "kind", "fact", "direction", "meaning")
-    return Vocabulary(facts, (Attribute(*row) for row in attributes))
+    return Vocabulary(facts, (Attribute(*row) for row in attributes), {name: members for (kind, name), members in lexicon.items() if kind == "words"})
+
+
+def _lexicon(tables: Tables) -> Iterator[tuple[str, str, str]]:
+    """Rows of the lexicon; none in a file of an earlier minor."""
+    return tables["lexicon"].select("kind", "name", "entries") if "lexicon" in tables else iter(())
 
 
 def _fact(
     name: str, kind: str, meaning: str, source: str, words: str, unit: str, assumed: str | None, within: str, because: str,
-    quiet: str | None, phrases: str, confusables: str, codes: str,
+    quiet: str | None, phrases: str, confusables: str, codes: str, entails: tuple[str, ...] = (),
 ) -> Fact:  # fmt: skip
     if kind not in KINDS:
         raise DatabaseDamaged(f"the fact {name!r} is of a kind {kind!r} that there is not")
@@ -55,7 +65,7 @@ def _fact(
     said = {word: tuple(texts) for word, texts in json.loads(phrases).items()}
     return Fact(
         name, kind, meaning, source, tuple(json.loads(words)), unit, assumption,
-        None if quiet is None else _value(name, kind, quiet), said, tuple(json.loads(confusables)), json.loads(codes),
+        None if quiet is None else _value(name, kind, quiet), said, tuple(json.loads(confusables)), json.loads(codes), entails,
     )  # fmt: skip
 
 

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from typing import Any, Literal
+from typing import Annotated, Any, Literal
 
-from pydantic import Field
+from pydantic import BeforeValidator, Field
 
-from regdb_compiler.documents.scalars import Boolean, Document, Words
+from regdb_compiler.documents.scalars import Boolean, Document, Integer, Words
 
 
 class Assumed(Document):
@@ -15,6 +15,46 @@ class Assumed(Document):
     assume: Any
     within: str = ""
     because: str
+
+
+def _aged(value: Any) -> Any:
+    return {"ages": value} if isinstance(value, str) else value
+
+
+class Plausible(Document):
+    """Numbers that can be true: anything else was misread."""
+
+    min: str = ""
+    max: str = ""
+    step: str = ""
+
+
+class Fusion(Document):
+    """How statements on a fact are believed and forgotten. What a fact leaves out its class says."""
+
+    ages: str = ""
+    holds: Words = ()
+    fresh: Words = ()
+    confirm: Integer | None = None
+    within: str = ""
+    apart: str = ""
+    permissive: Words = ()
+    corroborate: Words | None = None
+    replaced: Boolean | None = None
+    strictest: Words = ()
+    plausible: Plausible | None = None
+    asks: Words = ()
+    question: str = ""
+    ends: Words | None = None
+    places: Words | None = None
+    because: str = ""
+
+
+class Age(Fusion):
+    """A class of facts that age alike; `sources`: facts of these sources belong to it unless their file or they themselves say otherwise."""
+
+    meaning: str
+    sources: Words = ()
 
 
 class Fact(Document):
@@ -31,6 +71,8 @@ class Fact(Document):
     confusables: Words = ()
     codes: dict[str, str] = Field(default_factory=dict)
     because: str = ""
+    entails: Words = ()
+    fusion: Annotated[Fusion, BeforeValidator(_aged)] = Fusion()
 
 
 class Attribute(Document):
@@ -46,8 +88,11 @@ class Attribute(Document):
 class VocabularyFile(Document):
     """A file of the vocabulary."""
 
+    ages: dict[str, Age] = Field(default_factory=dict)
+    fusion: str = ""
     facts: dict[str, Fact] = Field(default_factory=dict)
     attributes: dict[str, Attribute] = Field(default_factory=dict)
+    words: dict[str, Words] = Field(default_factory=dict)
 
 
 class CitationStyle(Document):

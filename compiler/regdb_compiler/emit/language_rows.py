@@ -2,14 +2,17 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+
 from regdb.jurisdiction import Jurisdiction, JurisdictionTree
 from regdb.states import StateMachine
 from regdb.vocabulary import Fact, Value, Vocabulary
+from regdb_compiler.emit.fusion_rows import fusion_rows
 from regdb_compiler.emit.rows import Line, Tables, compact
 
 
 def language_rows(tree: JurisdictionTree, machine: StateMachine, vocabulary: Vocabulary) -> Tables:
-    """Rows of the six tables that hold the language. Names are in order, parents before children, states as declared."""
+    """Rows of the eight tables that hold the language. Names are in order, parents before children, states as declared."""
     places = sorted(tree, key=lambda item: tuple(step.id for step in tree.path(item.id)))
     return {
         "jurisdiction": [_jurisdiction(item) for item in places],
@@ -21,7 +24,15 @@ def language_rows(tree: JurisdictionTree, machine: StateMachine, vocabulary: Voc
             (item.name, item.kind, item.fact, item.direction, item.meaning)
             for _, item in sorted(vocabulary.attributes.items())
         ],
+        "fact_fusion": fusion_rows(vocabulary),
+        "lexicon": sorted(_lexicon(vocabulary)),
     }  # fmt: skip
+
+
+def _lexicon(vocabulary: Vocabulary) -> Iterator[Line]:
+    """Word classes, and which facts others entail."""
+    yield from (("words", name, compact(members)) for name, members in vocabulary.words.items())
+    yield from (("entails", fact.name, compact(fact.entails)) for fact in vocabulary if fact.entails)
 
 
 def _jurisdiction(item: Jurisdiction) -> Line:

@@ -1,0 +1,197 @@
+"""Free text about a driving scene -> statements about facts with the words they rest on, and what was set aside; silence says nothing."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import partial
+
+from regdb.units import UnitError, to_si
+from regdb.vocabulary import Value, Vocabulary
+from regdb_runtime.perception.context import Context, context_of
+from regdb_runtime.perception.evidence import Certainty, Reading, Span, Statement
+from regdb_runtime.perception.lexicon import BREAKS, FILLERS, Match, compile_lexicon
+from regdb_runtime.perception.normalise import Normalised, normalise
+from regdb_runtime.perception.relations import LightWords, Shown, lights
+from regdb_runtime.perception.sentences import Sentence, sentences
+
+LIGHT_FACTS = ("signal.color", "signal.shape", "signal.flashing", "signal.present")
+"""What the relation of light and colour speaks of."""
+LEGEND_WORDS = 9
+"""A text of at most so many tokens is read as a sign's legend."""
+
+
+@dataclass(frozen=True, slots=True)
+class _Said:
+    """One value of one fact, the tokens it rests on, and how it is meant."""
+
+    fact: str
+    value: Value
+    mask: int
+    rule: str
+    hedged: bool
+
+
+class Matcher:
+    """Compiled once from the vocabulary; reads any number of texts. Raises PhraseError for a vocabulary whose phrases do not compile."""
+
+    def __init__(self, vocabulary: Vocabulary) -> None:
+        self.vocabulary = vocabulary
+        self._lexicon = compile_lexicon(vocabulary)
+        self._lights = LightWords.of(self._lexicon)
+        self._facts = vocabulary.facts
+        self._has_lights = bool(self._lights.heads) and all(name in vocabulary for name in LIGHT_FACTS)
+        self._entails = {fact.name: tuple(name for name in fact.entails if name in vocabulary) for fact in vocabulary if fact.entails}
+
+    def read(self, text: str, captured: float = 0.0, frame: str = "", prompt: str = "", model: str = "") -> Reading:
+        """All that the text says of the vocabulary's facts; places are in `text` as given."""
+        normal = normalise(text)
+        statements: list[Statement] = []
+        aside: list[tuple[str, Span, str]] = []
+        make = partial(Statement, source="model", captured=captured, frame=frame, prompt=prompt, model=model)
+        before = False
+        for sentence in sentences(normal):
+            reader = _SentenceReader(self, normal, sentence)
+            reader.read(before)
+            for said in reader.said:
+                certainty: Certainty = "hedged" if said.hedged else "asserted"
+                statements.append(make(said.fact, said.value, certainty, spans=reader.spans(said.mask), rule=said.rule))
+            aside += ((name, reader.span(mask), why) for name, mask, why in reader.aside)
+            before = reader.ends_with_light
+        return Reading(text, tuple(statements), tuple(aside))
+
+
+class _SentenceReader:
+    """One sentence read: what it says and what is set aside, in order."""
+
+    def __init__(self, matcher: Matcher, normal: Normalised, sentence: Sentence) -> None:
+        self.matcher, self.normal, self.sentence = matcher, normal, sentence
+        self.said: list[_Said] = []
+        self.aside: list[tuple[str, int, str]] = []
+        self.ends_with_light = False
+
+    def read(self, before: bool) -> None:  # noqa: FBT001
+        """Find, weigh and record."""
+        matcher, words = self.matcher, self.sentence.words
+        found = _longest(matcher._lexicon.find(self.sentence), words)
+        swallowed = 0
+        for match in found:
+            if not match.entry.effects:
+                swallowed |= match.mask
+        shown = list(lights(self.sentence, matcher._lights, swallowed, before)) if matcher._has_lights else []
+        self.ends_with_light = any(word in matcher._lights.heads for word in words)
+        facts = [match for match in found if match.entry.effects]
+        if not facts and not shown:
+            return
+        denying = 0
+        for match in found:
+            denying |= match.mask
+        context = context_of(self.sentence, denying, [(match.first, match.last) for match in facts])
+        for match in facts:
+            self._record(match, context)
+        for light in shown:
+            self._record_light(light, context)
+        self._settle()
+
+    def _record(self, match: Match, context: Context) -> None:
+        why = context.why_aside(match.first)
+        denied = match.first in context.denied
+        hedged = match.first in context.hedged
+        for effect in match.entry.effects:
+            value = effect.value if effect.value is not None else self._number(effect.fact, match.number)
+            if value is None:
+                continue
+            if effect.fact == "signal.color" and not why:
+                why = next((context.colors_aside[at] for at in range(match.first, match.last + 1) if at in context.colors_aside), "")
+                denied = denied or match.last in context.denied
+            if why or (denied and not isinstance(value, bool)):
+                self.aside.append((effect.fact, match.mask, why or "denied"))
+            else:
+                self.said.append(_Said(effect.fact, value is not denied if isinstance(value, bool) else value, match.mask, f"phrase {match.entry.phrase!r}", hedged))
+
+    def _number(self, name: str, at: int) -> Value | None:
+        """The number at this token in SI; without a unit the fact's usual one is meant. None where the unit does not fit."""
+        number = self.sentence.numbers.get(at)
+        fact = self.matcher._facts[name]
+        if number is None:
+            return None
+        if fact.kind == "count":
+            return int(number.value) if not number.unit and number.value == int(number.value) else None
+        try:
+            return to_si(number.value, number.unit or fact.unit) if fact.kind == "quantity" else None
+        except UnitError:
+            return None
+
+    def _record_light(self, light: Shown, context: Context) -> None:
+        first, last = light.anchor, light.mask.bit_length() - 1
+        why = context.why_aside(first) or context.aside.get(last, "")
+        why = why or next((context.colors_aside[at] for at in range(first, last + 1) if at in context.colors_aside), "")
+        if not why and (first in context.denied or last in context.denied):
+            why = "denied"
+        if why:
+            self.aside.append(("signal.color", light.mask, why))
+            return
+        hedged = first in context.hedged or last in context.hedged
+        shape = "arrow" if light.arrow else "circular"
+        self.said.append(_Said("signal.color", light.color, light.mask, "light and colour", hedged))
+        if light.arrow:
+            self.said.append(_Said("signal.shape", shape, light.mask, "light and colour", hedged))
+        if light.flashing:
+            self.said.append(_Said("signal.flashing", True, light.mask, "light and colour", hedged))
+
+    def _settle(self) -> None:
+        """What the facts entail, then each statement once, in the order of its place."""
+        for said in tuple(self.said):
+            if said.value is not False and said.value != "none":
+                self.said += (_Said(name, True, said.mask, f"{said.rule}, by {said.fact}", said.hedged) for name in self.matcher._entails.get(said.fact, ()))
+        once: dict[tuple[str, Value], _Said] = {}
+        for said in self.said:
+            key = said.fact, said.value
+            held = once.get(key)
+            if held is None or (held.hedged and not said.hedged):
+                once[key] = said
+        self.said = sorted(once.values(), key=lambda item: item.mask & -item.mask)
+
+    def spans(self, mask: int) -> tuple[Span, ...]:
+        """The words at these tokens, neighbouring ones joined."""
+        made: list[Span] = []
+        first = -1
+        at = 0
+        while mask >> at:
+            if mask >> at & 1:
+                first = at if first < 0 else first
+            elif first >= 0 and self.sentence.words[at] not in FILLERS:
+                made.append(self._place(first, at - 1))
+                first = -1
+            at += 1
+        made.append(self._place(first, mask.bit_length() - 1))
+        return tuple(made)
+
+    def span(self, mask: int) -> Span:
+        """From the first to the last of these tokens."""
+        return self._place((mask & -mask).bit_length() - 1, mask.bit_length() - 1)
+
+    def _place(self, first: int, last: int) -> Span:
+        return Span(*self.normal.original(self.sentence.starts[first], self.sentence.ends[last]))
+
+
+def _longest(found: list[Match], words: list[str]) -> list[Match]:
+    """Matches that lie within no longer one; legends only where they stand alone."""
+    kept: list[Match] = []
+    masks: list[int] = []
+    for match in sorted(found, key=lambda match: -match.mask.bit_count()):
+        if match.entry.legend and not _alone(match, words):
+            continue
+        mask = match.mask
+        if any(mask & other == mask and mask != other for other in masks):
+            continue
+        masks.append(mask)
+        kept.append(match)
+    return sorted(kept, key=lambda match: match.first)
+
+
+def _alone(match: Match, words: list[str]) -> bool:
+    """Whether the phrase is a legend: all of the sentence, or between quotation marks, or before the word `sign`."""
+    before, after = match.first - 1, match.last + 1
+    opened = before < 0 or words[before] in BREAKS
+    closed = after >= len(words) or words[after] in BREAKS or words[after] == "sign"
+    return closed and (opened or words[min(after, len(words) - 1)] == "sign")

@@ -1,0 +1,130 @@
+"""What single phrases cannot say: a light with its colours, arrows and flashing, and whether `pedestrian crossing` is an act or a place."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+from regdb_runtime.perception.lexicon import BREAKS, FILLERS, Lexicon, Match
+from regdb_runtime.perception.sentences import Sentence
+
+LINKS = frozenset(
+    """is are was were be being been remain remaining remained stay show showing shown showed display displaying displayed turn turning turned
+    indicate indicating indicated become became change changing changed appear appearing seem seeming look looking go going went stay staying
+    read reading lit illuminated flash flashing flashed glow glowing glowed have having has switch switched switching shine shining shone with in to emit emitting at""".split()
+)
+"""Between a light and its colour: `the light IS red`, `SHOWING green`."""
+_LEFT_WORDS = frozenset("solid steady circular round bright illuminated lit flashing blinking single large traffic left right straight turn turning and or , / bold clear vertical horizontal pointing signal light arrow color colored hue hued lamp led".split())
+_FLASHING = frozenset("flashing blinking flash blink flashed".split())
+_PRONOUNS = frozenset("it they which that both".split())
+_FORWARD = 14
+"""Tokens after a light within which its colour is looked for."""
+
+
+@dataclass(frozen=True, slots=True)
+class Shown:
+    """A light said to show a colour. `mask`: the tokens it rests on; `anchor`: the first of them that context is judged at."""
+
+    color: str
+    arrow: bool
+    flashing: bool
+    mask: int
+    anchor: int
+
+
+@dataclass(frozen=True, slots=True)
+class LightWords:
+    """The vocabulary's word classes that lights need: heads, arrows, colours by word, what else has a colour."""
+
+    heads: frozenset[str]
+    arrows: frozenset[str]
+    colors: dict[str, str]
+
+    @classmethod
+    def of(cls, lexicon: Lexicon) -> LightWords:
+        """From the classes `light`, `arrow`, `red`, `yellow`, `green`."""
+        colors = {word: color for color in ("red", "yellow", "green") for word in lexicon.class_of(f"light_{color}")}
+        return cls(lexicon.class_of("light_head"), lexicon.class_of("light_arrow"), colors)
+
+
+def lights(sentence: Sentence, words: LightWords, swallowed: int, before: bool) -> Iterator[Shown]:  # noqa: FBT001
+    """Every colour a light of the sentence is said to show. `before`: the sentence before ended speaking of a light."""
+    said = sentence.words
+    heads = [at for at, word in enumerate(said) if (word in words.heads or word in words.arrows) and not swallowed >> at & 1]
+    if not heads and not before:
+        return
+    colors = [at for at, word in enumerate(said) if word in words.colors and not swallowed >> at & 1]
+    if not colors:
+        return
+    taken: set[int] = set()
+    for place, head in enumerate(heads):
+        for at in _left(said, head, words):
+            taken.add(at)
+            yield _shown(said, at, head, words)
+        following = heads[place + 1] if place + 1 < len(heads) else len(said)
+        for at in _right(said, head, following, words):
+            if at not in taken:
+                taken.add(at)
+                yield _shown(said, at, head, words)
+    if before and not taken and said[0] in _PRONOUNS:
+        for at in _right(said, 0, len(said), words):
+            yield _shown(said, at, 0, words)
+
+
+def _shown(said: list[str], at: int, head: int, words: LightWords) -> Shown:
+    first, last = min(at, head), max(at, head)
+    span = said[max(0, first - 2) : last + 2]
+    arrow = any(word in words.arrows for word in said[first : last + 2])
+    flashing = any(word in _FLASHING for word in span)
+    return Shown(words.colors[said[at]], arrow, flashing, 1 << at | 1 << head, first)
+
+
+def _left(said: list[str], head: int, words: LightWords) -> Iterator[int]:
+    """Colours that stand before the head and belong to it: `red and green lights`, `green left-turn arrow`."""
+    at = head - 1
+    while at >= 0:
+        word = said[at]
+        if word in words.colors:
+            yield at
+        elif word not in _LEFT_WORDS and word not in FILLERS:
+            return
+        at -= 1
+
+
+def _right(said: list[str], head: int, following: int, words: LightWords) -> Iterator[int]:
+    """Colours said of the head after it: `the light ahead is red`, `lights, currently displaying red signals`."""
+    linked = False
+    found: list[int] = []
+    for at in range(head + 1, min(len(said), head + 1 + _FORWARD)):
+        word = said[at]
+        if word in ";!?":
+            break
+        if word in words.colors:
+            if at > head + 1 and not linked and said[at - 1] not in (":", ",", "(", "-"):
+                break
+            if _colors_another(said, at, words):
+                break
+            found.append(at)
+        elif word in LINKS:
+            linked = True
+        elif at >= following and word in words.heads | words.arrows and not found:
+            break
+        elif found and word not in FILLERS and word not in ("and", "or", ",", "to", "then", "/", "from", "not", "but", "turn", "turning", "turned", "before", "change", "changed"):
+            break
+    yield from found
+
+
+def _colors_another(said: list[str], at: int, words: LightWords) -> bool:
+    """Whether the colour word belongs to a thing named right after it that is no light: `a red car`."""
+    if at + 1 >= len(said):
+        return False
+    word = said[at + 1]
+    if word in BREAKS or word in LINKS or word in FILLERS or word in words.heads or word in words.arrows or word in words.colors:
+        return False
+    return word in THINGS
+
+
+THINGS = frozenset(
+    "car truck van bus sedan suv vehicle sign building shirt jacket tree curb cone barrier line bicycle motorcycle taxi umbrella roof wall bag hat sport brick flag banner coat dress pickup trailer".split()
+)
+"""Things whose colour is not a light's."""
