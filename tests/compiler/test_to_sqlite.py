@@ -69,7 +69,7 @@ def test_meta_says_sources_counts_licence_and_hash(connection: sqlite3.Connectio
     assert set(meta) == set(META_KEYS)
     assert meta["content_hash"] == content_hash(connection)
     assert meta["notice"].startswith("Not legal advice")
-    assert meta["schema_version"] == "1.1"
+    assert meta["schema_version"] == "1.2"
     assert meta["regulations"] == "5"
     sources = json.loads(meta["sources"])
     assert sources["cvc"] == {"jurisdiction": "State of California", "source": "https://leginfo.legislature.ca.gov", "checked": "2026-11-21"}
@@ -191,7 +191,7 @@ def test_the_order_in_which_files_are_read_changes_nothing(small: Build, databas
     for items in (facts, sections, places, attributes):
         mixed.shuffle(items)
     shuffled = replace(
-        corpus, sections=tuple(sections), tree=type(corpus.tree)(places), vocabulary=type(corpus.vocabulary)(facts, attributes)
+        corpus, sections=tuple(sections), tree=type(corpus.tree)(places), vocabulary=type(corpus.vocabulary)(facts, attributes, corpus.vocabulary.words)
     )
     from regdb_compiler.authority import Authority
     from regdb_compiler.precedence import find_targets

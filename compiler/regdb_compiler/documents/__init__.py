@@ -4,13 +4,16 @@ Every scalar arrives as text and gets its type here. Places are not kept in the 
 """
 
 from regdb_compiler.documents.language import (
+    Age,
     Assumed,
     Attribute,
     CitationStyle,
     Fact,
+    Fusion,
     Governs,
     Jurisdiction,
     JurisdictionsFile,
+    Plausible,
     State,
     StatesFile,
     SuperState,
@@ -37,9 +40,9 @@ from regdb_compiler.documents.section import (
 )
 
 __all__ = [
-    "Account", "Assumed", "Attribute", "Boolean", "Bounds", "Case", "Cases", "CitationStyle", "Condition", "Date",
-    "Definition", "Delegation", "Document", "Expectation", "Fact", "Force", "Governs", "Integer", "Jurisdiction",
+    "Account", "Age", "Assumed", "Attribute", "Boolean", "Bounds", "Case", "Cases", "CitationStyle", "Condition", "Date",
+    "Definition", "Delegation", "Document", "Expectation", "Fact", "Force", "Fusion", "Governs", "Integer", "Jurisdiction",
     "JurisdictionsFile", "LawTest", "Omitted", "Outline", "OutlineArticle", "OutlineChapter", "OutlineSection",
-    "Raw", "Regulation", "Section", "Sections", "Slug", "Source", "State", "States", "StatesFile", "Subdivision",
+    "Plausible", "Raw", "Regulation", "Section", "Sections", "Slug", "Source", "State", "States", "StatesFile", "Subdivision",
     "SuperState", "Vagueness", "Version", "VocabularyFile", "Words",
 ]  # fmt: skip

@@ -38,6 +38,7 @@ _TITLES = {
 _SHORT_FORMS: Mapping[str, JsonSchemaValue] = {
     "listed": {"type": "string", "description": "One item may stand without a list."},
     "_vagueness": {"type": "integer", "minimum": 0, "maximum": 5},
+    "_aged": {"type": "string", "description": "The class alone."},
     "_headed": {"type": "string", "description": "The heading alone."},
     "_decided": {"type": "string", "description": "The formula alone, or unknown."},
     "_valued": {"type": "string", "description": "The number alone."},

@@ -19,6 +19,7 @@ from regdb_compiler.parse import PARSE_RULES
 from regdb_compiler.parse_condition import CONDITION_RULES
 from regdb_compiler.precedence import PRECEDENCE_RULES
 from regdb_compiler.read_corpus import CORPUS_RULES
+from regdb_compiler.read_fusion import FUSION_RULES
 from regdb_compiler.read_interpretations import INTERPRETATION_RULES
 from regdb_compiler.read_vocabulary import VOCABULARY_RULES
 from regdb_compiler.resolve import RESOLVE_RULES
@@ -27,7 +28,7 @@ from regdb_compiler.suppression import SUPPRESSION_RULES
 from regdb_compiler.timeline import TIMELINE_RULES
 
 READING_RULES: tuple[RuleText, ...] = (
-    *SOURCE_RULES, *PARSE_RULES, *CONDITION_RULES, *CORPUS_RULES, *VOCABULARY_RULES, *INTERPRETATION_RULES, *DEFINITION_RULES,
+    *SOURCE_RULES, *PARSE_RULES, *CONDITION_RULES, *CORPUS_RULES, *VOCABULARY_RULES, *FUSION_RULES, *INTERPRETATION_RULES, *DEFINITION_RULES,
     *RESOLVE_RULES, *TIMELINE_RULES, *PRECEDENCE_RULES, *AUTHORITY_RULES, *LAW_TEST_RULES, *SUPPRESSION_RULES, *BASELINE_RULES,
 )  # fmt: skip
 """What is no lint rule but reported beside them: it stops compiling, unless it is about comments, the baseline or a gap."""
@@ -76,7 +77,8 @@ def _reading(rule: RuleText) -> Listed:
 
 def _origin(rule: RuleText) -> str:
     tables = {"source": SOURCE_RULES, "parse": PARSE_RULES, "parse_condition": CONDITION_RULES, "corpus": CORPUS_RULES,
-              "read_vocabulary": VOCABULARY_RULES, "read_interpretations": INTERPRETATION_RULES, "definitions": DEFINITION_RULES,
+              "read_vocabulary": VOCABULARY_RULES, "read_fusion": FUSION_RULES,
+              "read_interpretations": INTERPRETATION_RULES, "definitions": DEFINITION_RULES,
               "resolve": RESOLVE_RULES, "timeline": TIMELINE_RULES,
               "precedence": PRECEDENCE_RULES, "authority": AUTHORITY_RULES, "law_tests.read": LAW_TEST_RULES, "suppression": SUPPRESSION_RULES,
               "baseline": BASELINE_RULES}  # fmt: skip
