@@ -14,6 +14,8 @@ from regdb_runtime.perception.render.draw_sign import pillow
 from regdb_runtime.perception.render.sign_faces import Colour
 from regdb_runtime.planning.trajectory import Floats
 
+FAR_OUT = 8000.0
+"""Pixels beyond which corners are drawn in: the drawing library takes no larger ones."""
 COARSE = 4
 """Pixels of the frame to one pixel of the picture that tells who covers what."""
 
@@ -27,7 +29,7 @@ class Extent:
 
 
 class Canvas:
-    """Draws one frame. `owner`: number of the thing being drawn, 0 for what is not counted."""
+    """Draws one frame. `owner`: number of the thing being drawn; 0 for the ground, -1 for what hides things without being one of them."""
 
     def __init__(self, camera: Camera) -> None:
         self.camera, self.library = camera, pillow()
@@ -47,16 +49,25 @@ class Canvas:
             return
         share = np.linspace(0, 1, last - first)[:, None]
         rows = (np.array(above) * (1 - share) + np.array(below) * share).astype(np.uint8)
-        self.image.paste(self.library.Image.fromarray(np.repeat(rows[:, None, :], 2, axis=1)).resize((self.size[0], last - first)), (0, first))
+        whole = np.broadcast_to(rows[:, None, :], (last - first, self.size[0], 3))
+        self.image.paste(self.library.Image.fromarray(np.ascontiguousarray(whole)), (0, first))
 
     def polygon(self, points: Floats, colour: Colour, edge: Colour | None = None) -> None:
         """A filled world polygon (n, 3)."""
         pixels = self.camera.polygon(points)
-        if pixels is None or not self._visible(pixels):
+        if pixels is not None:
+            self.fill(pixels, colour, edge)
+
+    def fill(self, pixels: Floats, colour: Colour, edge: Colour | None = None) -> None:
+        """A filled polygon of pixels (n, 2)."""
+        corners = pixels.tolist()
+        columns, rows = [x for x, _ in corners], [y for _, y in corners]
+        if max(columns) < 0 or max(rows) < 0 or min(columns) > self.size[0] or min(rows) > self.size[1]:
             return
-        flat = [(float(x), float(y)) for x, y in np.clip(pixels, -8000, 8000)]
+        flat = [(min(max(x, -FAR_OUT), FAR_OUT), min(max(y, -FAR_OUT), FAR_OUT)) for x, y in corners]
         self._draw.polygon(flat, fill=colour, outline=edge)
-        self._own(pixels)
+        if self.owner:
+            self._own(pixels)
 
     def stroke(self, points: Floats, thickness: float, colour: Colour) -> None:
         """A line through world points (n, 3), `thickness` metres wide, with round ends; nothing when any part is behind the camera."""
@@ -136,9 +147,10 @@ class Canvas:
         self._own(np.array([(x - r, y - r), (x + r, y - r), (x + r, y + r), (x - r, y + r)]))
 
     def _own(self, pixels: Floats) -> None:
-        if self.owner:
+        """Note who covers these pixels; things without a number (`scenery`) cover them for nobody."""
+        if self.owner > 0:
             self._drawn.setdefault(self.owner, []).append(pixels)
-        self._owned.polygon([tuple(p) for p in (np.clip(pixels, -8000, 8000) / COARSE).tolist()], fill=self.owner)
+        self._owned.polygon([tuple(p) for p in (np.clip(pixels, -FAR_OUT, FAR_OUT) / COARSE).tolist()], fill=self.owner)
 
     def _visible(self, pixels: Floats) -> bool:
         low, high = pixels.min(axis=0), pixels.max(axis=0)

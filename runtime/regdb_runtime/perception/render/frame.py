@@ -19,8 +19,9 @@ from regdb_runtime.perception.render.camera import Camera, CameraSettings
 from regdb_runtime.perception.render.canvas import Canvas
 from regdb_runtime.perception.render.figures import draw_road_user
 from regdb_runtime.perception.render.furniture import draw_light, draw_sign
+from regdb_runtime.perception.render.roadside import Roadside, draw_roadside, roadside
 from regdb_runtime.perception.render.sign_faces import face_of
-from regdb_runtime.perception.render.street import FARTHEST, draw_street
+from regdb_runtime.perception.render.street import FARTHEST, Ground
 
 QUALITY = 88
 """JPEG quality of frames."""
@@ -81,18 +82,21 @@ class Renderer:
         self._map, self._settings = road_map, settings or CameraSettings()
         self._headings = _light_headings(road_map)
         self._fact_of = _facts_by_code(vocabulary)
+        self._ground = Ground(road_map)
+        self._beside = [_beside(item) for item in roadside(road_map)]
         self._signs = tuple(_placed(road_map, sign) for sign in road_map.signs.values() if sign.position is not None and face_of(sign.code))
 
     def render(self, observation: Observation, further: Sequence[PlacedSign] = ()) -> Rendering:
         """The view of the ego's camera; `further` signs stand where the map knows of none."""
         camera = Camera(self._settings, observation.ego)
         canvas = Canvas(camera)
-        draw_street(canvas, self._map)
-        things = [*self._light_things(observation), *map(self._sign_thing, (*self._signs, *further)), *map(_track_thing, observation.tracks)]
+        self._ground.draw(canvas)
+        things = [*self._beside, *self._light_things(observation), *map(self._sign_thing, (*self._signs, *further))]
+        things += map(_track_thing, observation.tracks)
         ahead = [(camera.depth(np.array([*thing.place, 1.0])), thing) for thing in things]
         drawn = sorted(((depth, thing) for depth, thing in ahead if 1.0 < depth < FARTHEST), key=lambda item: (-item[0], item[1].id))
         for number, (_, thing) in enumerate(drawn, 1):
-            canvas.owner = number
+            canvas.owner = number if thing.kind else -1
             thing.draw(canvas)
         truths = []
         for number, (depth, thing) in enumerate(drawn, 1):
@@ -139,6 +143,11 @@ class _Thing:
     value: Value | None
     place: tuple[float, float]
     draw: Callable[[Canvas], None]
+
+
+def _beside(item: Roadside) -> _Thing:
+    """Scenery: of no kind, so no truth tells of it."""
+    return _Thing("", f"roadside {item.x:.1f} {item.y:.1f}", "", None, (item.x, item.y), lambda canvas: draw_roadside(canvas, item))
 
 
 def _track_thing(track: Track) -> _Thing:
