@@ -4,11 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from typing import Any, Literal, Protocol
+from typing import Any, Literal, Protocol, runtime_checkable
 
 from regdb_runtime.observation import Provenance
 
 Failure = Literal["", "deadline", "connection", "status", "malformed", "too_large", "cancelled"]
+
+Box = tuple[float, float, float, float]
+"""Left, top, right, bottom in pixels of a frame; the origin is the upper left corner."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -25,13 +28,18 @@ class Frame:
 
 @dataclass(frozen=True)
 class Prompt:
-    """What is asked: text, the JSON Schema an answer should keep (None: free text), turns of earlier ticks, and whether a crop is asked about."""
+    """What is asked: text, the JSON Schema an answer should keep (None: free text), turns of earlier ticks, and whether a crop is asked about.
+
+    `history`: (question, answer) of earlier ticks, oldest first. `crop`: the part of the frame that is shown, (left, top, right, bottom) in
+    pixels of the frame as captured; None shows all of it. `max_tokens`: how long an answer may become.
+    """
 
     text: str
     schema: Mapping[str, Any] | None = None
     history: tuple[tuple[str, str], ...] = ()
     name: str = ""
     max_tokens: int = 128
+    crop: Box | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -55,3 +63,10 @@ class Describer(Protocol):
     def describe(self, frame: Frame, prompt: Prompt, deadline: float) -> Description:
         """Ask; `deadline` in wall-clock seconds from now bounds the whole call, every phase of it."""
         ...
+
+
+@runtime_checkable
+class Closing(Protocol):
+    """A client that holds something: `close` ends a call in flight (its answer is then the failure `cancelled`) and lets go of it."""
+
+    def close(self) -> None: ...
