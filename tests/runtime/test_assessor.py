@@ -53,7 +53,7 @@ def naive(of: Case) -> tuple[int | None, int]:
         if of.ok[row] and np.isinf(sweeper.first_contact(of.candidates.x[row], of.candidates.y[row], of.candidates.heading[row])[0]):
             judged = judging.judge(measure(what, of.candidates, np.array([row])))
             rank = int(judged.rank[0])
-            violation = violations(judged, assessor.settings)[0] if rank == UNLAWFUL else ()
+            violation = violations(judged, assessor.settings, rank)[0] if rank != LAWFUL else ()
             found.append((rank, violation, float(of.costs.weighted[row]), place, row))
     return (min(found)[-1], min(found)[0]) if found else (None, NO_PLAN)
 

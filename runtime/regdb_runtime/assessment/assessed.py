@@ -12,7 +12,8 @@ from regdb_runtime.verdict import Verdict
 LAWFUL, UNCERTAIN, UNLAWFUL, NO_PLAN = 0, 1, 2, 3
 RANKS: Final = {LEGAL: LAWFUL, UNKNOWN: UNCERTAIN, ILLEGAL: UNLAWFUL}
 Violation = tuple[float, ...]
-"""How far each duty is broken, weightiest first (`planning.duties`); less is better, empty for what is not unlawful."""
+"""How far each duty is broken, weightiest first (`planning.duties`); less is better, empty for what is lawful. Of an unknown plan: how far
+each may be broken."""
 
 
 @dataclass(frozen=True)
@@ -21,7 +22,7 @@ class Assessed:
 
     `index` is its row of the candidates, None without one: then `rank` is 3, and `verdict` that of the cheapest plan that was judged. `verdict`
     is the worst of the stretches the plan crosses (of equally bad ones the first), `verdicts` all of them in order. `violation` is compared
-    between unlawful plans only. `judged`: how many plans were judged.
+    between plans of the same rank only. `judged`: how many plans were judged.
     """
 
     index: int | None

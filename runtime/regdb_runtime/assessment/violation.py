@@ -1,4 +1,4 @@
-"""How far plans break the duties of the law, weightiest duty first, for the moment when nothing is lawful; many plans at once."""
+"""How far plans break the duties of the law, or may, weightiest duty first, for the moment when nothing is lawful; many plans at once."""
 
 from __future__ import annotations
 
@@ -14,8 +14,10 @@ from regdb_runtime.assessment.settings import AssessmentSettings
 from regdb_runtime.trajectory import Floats
 
 
-def violations(judged: Judged, settings: AssessmentSettings) -> list[Violation]:
+def violations(judged: Judged, settings: AssessmentSettings, rank: int = UNLAWFUL) -> list[Violation]:
     """For each of k plans how far it breaks each duty, and last what no duty covers; compare as tuples, the least is chosen.
+
+    With `rank` UNCERTAIN: how far it may break them, by the rules whose breach is unknown.
 
     As `planning.duties.violations`, over all stretches a plan crosses: a topic counts once, by the stretch where it is broken most. A speed
     counts by how far it is beyond its limit on average over the plan, so that of plans all too fast the one that slows down is the lesser evil;
@@ -24,7 +26,7 @@ def violations(judged: Judged, settings: AssessmentSettings) -> list[Violation]:
     duties, step = settings.duties, settings.breach_step
     worst: dict[tuple[int, str], Floats] = {}
     for group in judged.groups:
-        if RANKS[group.verdict.verdict] == UNLAWFUL:
+        if RANKS[group.verdict.verdict] == rank:
             for rule in group.verdict.deciding:
                 place = next((index for index, duty in enumerate(duties) if duty.covers(rule)), len(duties))
                 found = worst.setdefault((place, rule.topic or rule.id), np.zeros(judged.facts.size))

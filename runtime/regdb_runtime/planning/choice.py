@@ -1,7 +1,8 @@
 """The choice among candidates: lawful before unknown before unlawful, then the weighted cost, then the order they were given in.
 
 No weight can buy a breach: the weighted sum is compared only between candidates of the same rank. Among unlawful ones, when there is nothing
-else, the lesser breach by declared order of duties wins before cost is looked at.
+else, the lesser breach by declared order of duties wins before cost is looked at; among unknown ones likewise the lesser breach that there may
+be, so that a vehicle that knows little stops at a red light rather than take it that somebody waves it through.
 """
 
 from __future__ import annotations
@@ -35,8 +36,8 @@ class Option(Protocol):
 
 @dataclass(frozen=True, slots=True)
 class Choice:
-    """Index of the chosen option (None: none has a plan), what the next best of the same rank (and, if unlawful, the same breach) costs more
-    than it, and the flag. `violations`: how far the chosen one breaks each duty, in their order; empty unless it is unlawful."""
+    """Index of the chosen option (None: none has a plan), what the next best of the same rank (and the same breach, unless both are lawful) costs more
+    than it, and the flag. `violations`: how far the chosen one breaks each duty, or may, in their order; empty when it is lawful."""
 
     index: int | None
     margin: float | None
@@ -54,7 +55,7 @@ def choose(
     """The best option: least by (rank, breach, weighted cost, tie).
 
     `ties`: the place of each option in the fixed order that settles equal costs (a state's place in the machine); without it the order given.
-    `breaches` measures an unlawful option; by default from its verdict. An option without a cost has no plan, whatever its rank. A cost
+    `breaches` measures an option that is not lawful; by default from its verdict. An option without a cost has no plan, whatever its rank. A cost
     that is not a number counts as the greatest.
     """
     measure = breaches or (lambda option: () if option.verdict is None else violations(option.verdict, duties))
@@ -72,4 +73,4 @@ def _key(option: Option, tie: int, measure: Callable[[Option], tuple[float, ...]
     if option.cost is None or option.rank >= NO_PLAN:
         return NO_PLAN, (), 0.0, tie
     total = option.cost.total
-    return option.rank, measure(option) if option.rank == UNLAWFUL else (), total if total == total else float("inf"), tie
+    return option.rank, measure(option) if option.rank in (UNKNOWN, UNLAWFUL) else (), total if total == total else float("inf"), tie

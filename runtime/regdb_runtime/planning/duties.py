@@ -67,12 +67,13 @@ a plan that touches somebody is not among the candidates at all."""
 
 
 def violations(verdict: Verdict, duties: Sequence[Duty] = DUTIES) -> tuple[float, ...]:
-    """How far a plan breaks each duty, weightiest first, one more number for what none covers; compare as tuples, the least is chosen.
+    """How far a plan breaks each duty (where the verdict is unknown: may break it), weightiest first, one more number for what none covers;
+    compare as tuples, the least is chosen.
 
     A duty kept is 0. A limit passed counts by how far (0 to 1: the share of the bound by which the plan is beyond it), so that 5 mph too fast
     is less than 10; any other rule counts 1 for each topic broken, so that a model code's twin of an enacted rule adds nothing.
     """
-    if verdict.verdict != "illegal":
+    if verdict.verdict == "legal":
         return (0.0,) * (len(duties) + 1)
     return count(verdict.deciding, verdict.limits, verdict.plan.facts, duties)
 
