@@ -81,6 +81,29 @@ def test_under_green_who_has_red_before_his_line_is_held() -> None:
     assert roles("straight", car("runs", 1.75, -9.0, NORTH, 8.0), lights=GREEN)["movement.hazard"] is True
 
 
+def test_who_could_not_stop_any_more_is_not_held() -> None:
+    assert roles("straight", car("runs", 1.75, -30.0, NORTH, 14.0), lights=GREEN)["movement.hazard"] is True
+
+
+def test_a_stop_sign_holds_cross_traffic_too() -> None:
+    arms = {"south": {"control": "stop"}, "north": {"control": "stop"}}
+    main = Street(cross("none", arms=arms), WAYS["left"])
+    main.see(194.0, 3.0, [car("slowing", -1.75, 35.0, SOUTH, 8.0)])
+    assert main.first(APPROACH, LEFT).roles["movement.hazard"] is False
+    main.see(194.0, 3.0, [car("slowing", -1.75, 14.0, SOUTH, 8.0)])
+    assert main.first(APPROACH, LEFT).roles["movement.hazard"] is True
+
+
+def test_a_green_arrow_protects_the_left_turn() -> None:
+    street = Street(cross(arms={"west": {"arrows": ("left",)}}), WAYS["left"])
+    arrow = {"x.e.left.light": (Indication("green", "left_arrow"),), LIGHT: (Indication("red"),)}
+    street.see(194.0, 3.0, [car("oncoming", 40.0, 1.75, WEST, 8.0)], lights=arrow)
+    roles_now = street.first(APPROACH, LEFT).roles
+    assert (roles_now["signal.shape"], roles_now["oncoming.hazard"], roles_now["movement.hazard"]) == ("arrow", False, False)
+    street.see(194.0, 3.0, [car("oncoming", 20.0, 1.75, WEST, 12.0)], lights=arrow)
+    assert street.first(APPROACH, LEFT).roles["oncoming.hazard"] is True
+
+
 @pytest.mark.parametrize(("x", "speed", "hazard"), [(-17.0, 4.0, True), (-25.0, 6.0, True), (-60.0, 2.0, False), (-12.0, 4.0, False)])
 def test_a_bicycle_beside_a_right_turn(x: float, speed: float, hazard: bool) -> None:
     rider = car("rider", x, -4.2, speed=speed, kind="bicycle")
@@ -190,3 +213,18 @@ def test_every_role_is_told_somewhere() -> None:
     assert found >= TRACK_FACTS - {"oncoming.clear_for_passing"}
     assert found >= LIGHT_FACTS
     assert not found & UNTOLD.keys()
+
+
+@pytest.mark.parametrize(
+    ("reach", "front", "expected"),
+    # the room beyond the exit ends at 226 m; to stop from 15.6 m/s before the line at 195 m takes 69 m
+    [(60.0, 80.0, None), (120.0, 80.0, False), (60.0, 150.0, None), (120.0, 100.0, False), (60.0, 185.0, False)],
+)
+def test_what_will_be_seen_in_time_to_stop_need_not_be_seen_yet(reach: float, front: float, expected: bool | None) -> None:
+    street = Street(cross(roads={"limit": 15.6464}), WAYS["straight"])
+    street.scenes = Scenes(street.road_map, street.scenes.database, street.scenes.footprint, ranges=SensorRanges(reach, reach, reach))
+    street.history = street.scenes.history()
+    street.see(front, 12.0, lights=GREEN)
+    stretch = next(item for item in street.stretches(APPROACH, APPROACH) if item.stage == "approach")
+    assert told(stretch, "intersection.exit_blocked") is expected
+    assert told(stretch, "pedestrian.in_crosswalk") is expected

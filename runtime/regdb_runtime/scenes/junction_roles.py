@@ -23,14 +23,20 @@ TURNS = ("left", "right", "u_turn")
 
 @dataclass(frozen=True, eq=False)
 class Entering:
-    """A junction with those on their way into it: `ways` that meet the plan's, `arriving` on them, `green`: the signal lets the vehicle go."""
+    """A junction with those on their way into it: `ways` that meet the plan's, `arriving` on them.
+
+    `limits`: posted speed of a way by its lane. `stopped`: lanes of ways whose traffic a sign stops. `green`: the signal lets the vehicle go, with
+    everybody from other highways held by his own; `protected`: by an arrow, which holds oncoming traffic too.
+    """
 
     junction: Junction
     ways: Sequence[Way]
     limits: Mapping[str, float]
     arriving: Sequence[Arriving]
     arrivals: Arrivals
+    stopped: frozenset[str]
     green: bool
+    protected: bool
     distance: float
     """From the front bumper to the junction's entrance, metres (negative: past it)."""
 
@@ -53,7 +59,7 @@ def junction_roles(look: Look, entering: Entering, turns: bool) -> dict[str, Val
         facts["movement.hazard"] = moving
     if entering.junction.control in ("signal", "all_way_stop"):
         facts["approaching_vehicle.controlled"] = True
-    blocked = exit_blocked(look, entering.junction.exit)
+    blocked = exit_blocked(look, entering.junction.exit, entering.junction.stop_station)
     return facts if blocked is None else facts | {"intersection.exit_blocked": blocked}
 
 
@@ -62,27 +68,33 @@ def _approaches(look: Look, item: Arriving) -> bool:
     return item.inside or not look.stands(item.track.speed)
 
 
+def _is_held(look: Look, entering: Entering, item: Arriving) -> bool:
+    """Whether a signal or sign stops somebody before his line, and he can still stop there."""
+    held = item.way.lane in entering.stopped or (entering.protected if item.way.comes_from == "oncoming" else entering.green)
+    return held and not item.inside and item.track.speed**2 <= 2 * look.settings.held_braking * item.to_entrance
+
+
 def _judged(look: Look, fact: str, item: Arriving) -> bool | None:
     return look.judged(fact, {"other_speed": item.track.speed, "other_distance": max(0.0, item.to_meeting)})
 
 
 def _hazard(look: Look, fact: str, entering: Entering, those: Sequence[Arriving], comes_from: Sequence[str]) -> bool | None:
     """Whether one of them is so near that it is a hazard; False only as far as they can be seen to come, None where that is not far enough."""
-    answers = [_judged(look, fact, item) for item in those if _approaches(look, item)]
+    free = fact == "oncoming.hazard" and entering.protected
+    answers = [_judged(look, fact, item) for item in those if _approaches(look, item) and not (free and _is_held(look, entering, item))]
     if True in answers:
         return True
     seen = look.ranges.vehicles - max(0.0, entering.distance)
     for way in entering.ways:
-        if way.comes_from in comes_from:
+        if way.comes_from in comes_from and not free:
             unseen = {"other_speed": entering.limits.get(way.lane, look.speed), "other_distance": max(0.0, seen)}
             answers.append(look.judged(fact, unseen))
     return False if all(answer is False for answer in answers) else None
 
 
 def _movement(look: Look, entering: Entering, turns: bool) -> bool | None:
-    """The planned turn, or start across: nobody on a way that meets it, no bicycle beside a turn. Whoever has red before his line is held."""
-    held = [item for item in entering.arriving if entering.green and not item.inside and item.way.comes_from != "oncoming"]
-    those = [item for item in entering.arriving if item not in held and _approaches(look, item)]
+    """The planned turn, or start across: nobody on a way that meets it who is not held before his line, and no bicycle beside a turn."""
+    those = [item for item in entering.arriving if _approaches(look, item) and not _is_held(look, entering, item)]
     if not turns:
         those = [item for item in those if item.way.comes_from != "oncoming" or item.inside]
     answers = [_judged(look, "movement.hazard", item) for item in those]
@@ -120,11 +132,15 @@ def _together(look: Look, entering: Entering, cross: Sequence[Arriving]) -> dict
     return {"cross_traffic.arrived_together": bool(waiting), "cross_traffic.on_right": any(way.bearing > 0.0 for way in waiting)}
 
 
-def exit_blocked(look: Look, beyond: float) -> bool | None:
-    """Whether no room for the vehicle is left beyond a station: somebody slow stands where it would come to stand; None: too far to be seen."""
+def exit_blocked(look: Look, beyond: float, line: float) -> bool | None:
+    """Whether no room for the vehicle is left beyond a station: somebody slow stands where it would come to stand.
+
+    None: too far to be seen, and it will not be seen in time to stop before the line.
+    """
     room = beyond + look.footprint.length + look.settings.exit_margin
     for item in look.around.among(*look.path_strip):
         there = item.track.kind != "pedestrian" and beyond - item.track.length < item.rear < room
         if there and item.front > look.around.front and abs(item.along) < SLOW:
             return True
-    return False if room - look.around.front <= look.ranges.vehicles else None
+    seen = room - look.around.front <= look.ranges.vehicles
+    return False if seen or look.in_time(line, room, look.ranges.vehicles) else None

@@ -59,6 +59,12 @@ class Look:
                 return item if item.rear - self.around.front <= self.ranges.vehicles else None
         return None
 
+    def in_time(self, line: float, place: float, reach: float) -> bool:
+        """Whether a place (stations) that sensors with a reach do not cover yet will be looked at early enough to stop before a line."""
+        left = line - max(place - reach + self.footprint.length, self.around.front)
+        speed = max(self.speed, self.own.speed_limit or 0.0)
+        return left >= speed * self.settings.look_response + speed**2 / (2 * self.settings.look_braking)
+
     def strip_beside(self, side: Side) -> tuple[Lane, Strip] | None:
         """The neighbouring lane of the same direction and its strip, None without one."""
         lane = beside(self.road_map, self.own, side)

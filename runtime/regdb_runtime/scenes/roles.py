@@ -140,7 +140,7 @@ class Viewpoint:
         marked = any(walk.marked for walk in self.scenes.road_map.crosswalks if walk.id in {name for _, _, name in bands})
         facts: dict[str, Value] = {"crosswalk.present": True, "crosswalk.marked": marked}
         edge = self.around.front + 0.1  # who is in it already is held not to go on
-        taken = [(max(low, edge), self.instant.walkers.in_crosswalk(name)) for low, _, name in bands]
+        taken = [(max(low, edge), self._somebody_in(name, low, high)) for low, high, name in bands]
         first = next((low for low, here in taken if here is True), next((low for low, here in taken if here is None), taken[0][0]))
         if not self.instant.eye.has_tracks:
             return facts, first, None
@@ -148,6 +148,14 @@ class Viewpoint:
         if occupied is not None:
             facts["pedestrian.in_crosswalk"] = occupied
         return facts | self._stopped_at_crosswalk(bands, occupied), first, occupied
+
+    def _somebody_in(self, crosswalk: str, start: float, end: float) -> bool | None:
+        """Whether somebody crosses there; a crosswalk too far to be seen is empty while it will be seen in time to stop."""
+        found = self.instant.walkers.in_crosswalk(crosswalk)
+        if found is not None:
+            return found
+        line = start if self.maneuver.junction is None else min(start, self.maneuver.junction.stop_station)
+        return False if self.look.in_time(line, end, self.scenes.ranges.pedestrians) else None
 
     def _stopped_at_crosswalk(self, bands: list[tuple[float, float, str]], occupied: bool | None) -> dict[str, Value]:
         """Another vehicle stands before a crosswalk in which somebody crosses."""
@@ -187,9 +195,10 @@ class Viewpoint:
         assert crossings is not None
         limits = {way.lane: limit for way in crossings.ways if (limit := self.scenes.road_map.lanes[way.lane].speed_limit) is not None}
         green = self.signal.get("signal.color") == "green" and self.signal.get("signal.flashing") is False
+        stopped = frozenset(way.lane for way in crossings.ways if self.scenes.road_map.lanes[way.lane].control in ("stop", "all_way_stop"))
         return Entering(
-            junction, crossings.ways, limits, self.instant.arriving(crossings), self.history.past.arrivals, green,
-            junction.entrance - self.around.front,
+            junction, crossings.ways, limits, self.instant.arriving(crossings), self.history.past.arrivals, stopped, green,
+            green and self.signal.get("signal.shape") == "arrow", junction.entrance - self.around.front,
         )  # fmt: skip
 
     def turn(self, standing: Mapping[str, Value]) -> dict[str, Value]:
@@ -243,7 +252,7 @@ class Viewpoint:
     def _rail_exit(self, rail: Band, station: float) -> dict[str, Value]:
         """Whether room is left beyond the rails."""
         beyond = next((end for start, end, band in self.scenes.courses.rails(self.maneuver.lane_path) if band is rail and start == station), station)
-        blocked = exit_blocked(self.look, beyond)
+        blocked = exit_blocked(self.look, beyond, station)
         return {} if blocked is None else {"rail.exit_blocked": blocked}
 
     def _turn_on(self, part: Part, standing: Mapping[str, Value]) -> Mapping[str, Value]:

@@ -60,6 +60,12 @@ class SceneSettings:
     """A stop with the front no farther than this before the nearest rail is a stop before it (50 ft, CVC 22451 and 22452)."""
     together: float = 1.0
     """Two vehicles that reach the junction within this time reach it at the same time."""
+    held_braking: float = 4.0
+    """Who needs no more braking (m/s2) to stop before his red light or STOP sign is taken to stop there (least braking of RSS, ad-rss-lib)."""
+    look_braking: float = 2.0
+    look_response: float = 0.5
+    """A place still too far to be seen is looked at in time if, once it is in range, this braking (m/s2, the paper drive's comfort) after this time
+    stops the vehicle before the line: until then nobody is taken to be there."""
     watched: float = 60.0
     """Who arrives at a junction is noted from so far before it on."""
     beside_lane: float = 3.7

@@ -109,7 +109,7 @@ def _lay_approach(streets: Streets, spec: JunctionSpec, approaches: list[Approac
         lane_id = f"{spec.id}.{compass(approach.heading)}.{movement.turn}{suffix}" + (f".{exit_side.road.id}" if twin else "")
         _connect(
             streets, lane_id, spec.id, incoming.lanes[movement.from_lane - 1], exit_side.lanes[movement.to_lane - 1], movement.turn,
-            by_turn[movement.turn], facts,
+            by_turn[movement.turn], facts, approach.control,
         )  # fmt: skip
     _connect_bicycles(streets, spec, approaches, index, facts, by_turn["straight"])
 
@@ -264,8 +264,9 @@ def _back_from_end(line: Floats, distance: float) -> tuple[float, float]:
 
 
 def _connect(
-    streets: Streets, lane_id: str, junction: str, before_id: str, after_id: str, turn: Turn, lights: tuple[str, ...], facts: dict[str, Value]
-) -> None:
+    streets: Streets, lane_id: str, junction: str, before_id: str, after_id: str, turn: Turn, lights: tuple[str, ...], facts: dict[str, Value],
+    control: Control,
+) -> None:  # fmt: skip
     """Lay the lane of one movement from the end of one lane to the beginning of another."""
     before, after = streets.lanes[before_id], streets.lanes[after_id]
     points, headings = connection(_end_pose(before.center, last=True), _end_pose(after.center, last=False))
@@ -275,7 +276,7 @@ def _connect(
     streets.lanes[lane_id] = Lane(
         lane_id, aside(points, headings, half), aside(points, headings, -half), points, before.speed_limit, before.kinds | {"intersection"},
         before.users, left_marking="none", right_marking="none", lights=lights, junction=junction, turn=turn, road=junction,
-        facts={**before.facts, **facts, **width},
+        facts={**before.facts, **facts, **width}, control=control,
     )  # fmt: skip
     streets.add_link(before_id, lane_id)
     streets.add_link(lane_id, after_id)
@@ -291,7 +292,7 @@ def _connect_bicycles(
     for place, other in enumerate(approaches):
         if place != index and other.outgoing is not None and other.outgoing.bicycle is not None and _turn(approach, other) == "straight":
             lane_id = f"{spec.id}.{compass(approach.heading)}.bike"
-            _connect(streets, lane_id, spec.id, approach.incoming.bicycle, other.outgoing.bicycle, "straight", lights, facts)
+            _connect(streets, lane_id, spec.id, approach.incoming.bicycle, other.outgoing.bicycle, "straight", lights, facts, approach.control)
 
 
 def _end_pose(line: Floats, *, last: bool) -> tuple[float, float, float]:
