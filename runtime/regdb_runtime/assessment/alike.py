@@ -29,26 +29,57 @@ class Distinctions:
     entangled: frozenset[str]
 
 
-def distinctions(rules: Iterable[Regulation]) -> Distinctions:
-    """Read them off the conditions and limits."""
-    facts: set[str] = set()
+class Distinguished:
+    """What rules distinguish, read off each rule once; the rules are kept as long as this is."""
+
+    def __init__(self) -> None:
+        self._rules: dict[int, tuple[Regulation, Distinctions]] = {}
+        self._sets: dict[int, tuple[tuple[Regulation, ...], Distinctions]] = {}
+
+    def of(self, rules: tuple[Regulation, ...]) -> Distinctions:
+        """What a set of rules distinguishes, remembered by the tuple's identity."""
+        held = self._sets.get(id(rules))
+        if held is None or held[0] is not rules:
+            held = self._sets[id(rules)] = rules, self._together(rules)
+        return held[1]
+
+    def facts(self, rule: Regulation) -> frozenset[str]:
+        """The facts one rule reads."""
+        return self._of_rule(rule).facts
+
+    def _of_rule(self, rule: Regulation) -> Distinctions:
+        held = self._rules.get(id(rule))
+        if held is None or held[0] is not rule:
+            held = self._rules[id(rule)] = rule, distinctions(rule)
+        return held[1]
+
+    def _together(self, rules: Iterable[Regulation]) -> Distinctions:
+        compared: dict[str, dict[Linear, None]] = {}
+        found = [self._of_rule(rule) for rule in rules]
+        for item in found:
+            for fact, bounds in item.compared.items():
+                compared.setdefault(fact, {}).update(dict.fromkeys(bounds))
+        facts, entangled = (frozenset[str]().union(*sets) for sets in ([item.facts for item in found], [item.entangled for item in found]))
+        return Distinctions(facts, {fact: tuple(bounds) for fact, bounds in compared.items()}, entangled)
+
+
+def distinctions(rule: Regulation) -> Distinctions:
+    """Read off one rule's conditions and limits."""
     entangled: set[str] = set()
     compared: dict[str, dict[Linear, None]] = {}
-    for rule in rules:
-        facts.update(rule.facts)
-        for limit in rule.limits:
-            compared.setdefault(limit.fact, {})[limit.bound] = None
-        for condition in (rule.when, rule.unless):
-            for literal in literals(condition) if condition is not None else ():
-                if not isinstance(literal, Compare):
-                    continue
-                left = _alone(literal.left)
-                if left is None:
-                    entangled.update(literal_facts(literal))
-                else:
-                    compared.setdefault(left, {})[literal.right] = None
-                    entangled.update(fact for _, fact in literal.right.terms)
-    return Distinctions(frozenset(facts), {fact: tuple(found) for fact, found in compared.items()}, frozenset(entangled))
+    for limit in rule.limits:
+        compared.setdefault(limit.fact, {})[limit.bound] = None
+    for condition in (rule.when, rule.unless):
+        for literal in literals(condition) if condition is not None else ():
+            if not isinstance(literal, Compare):
+                continue
+            left = _alone(literal.left)
+            if left is None:
+                entangled.update(literal_facts(literal))
+            else:
+                compared.setdefault(left, {})[literal.right] = None
+                entangled.update(fact for _, fact in literal.right.terms)
+    return Distinctions(frozenset(rule.facts), {fact: tuple(found) for fact, found in compared.items()}, frozenset(entangled))
 
 
 def _alone(side: Linear) -> str | None:
@@ -56,8 +87,9 @@ def _alone(side: Linear) -> str | None:
     return side.terms[0][1] if len(side.terms) == 1 and side.constant == 0 and side.terms[0][0] == 1 else None
 
 
-def codes(wanted: Distinctions, facts: PlanFacts, stretch: int, situation: Situation) -> tuple[Codes, bool]:
-    """One code a plan, (k,), equal where plans are alike; and whether codes mean the same for other plans measured against the same stretch.
+def codes(wanted: Distinctions, facts: PlanFacts, stretch: int, situation: Situation) -> tuple[Codes, tuple[str, ...] | None]:
+    """One code a plan, (k,), equal where plans are alike; and the facts in them: with the same facts, codes mean the same for other plans measured
+    against the same stretch. None where they mean nothing beyond these plans.
 
     `situation`: the scene with the facts that all plans share; what numbers are compared with is read from it.
     """
@@ -69,7 +101,7 @@ def codes(wanted: Distinctions, facts: PlanFacts, stretch: int, situation: Situa
         if size > _LIMIT // count:
             found, size, lasting = np.unique(found, return_inverse=True)[1].astype(np.int64), facts.size, False
         found, size, lasting = found * count + places, size * count, lasting and stable
-    return found, lasting
+    return found, tuple(names) if lasting else None
 
 
 def _places(wanted: Distinctions, name: str, column: Column, names: list[str], situation: Situation) -> tuple[Codes, int, bool]:

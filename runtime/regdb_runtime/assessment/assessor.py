@@ -8,8 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from regdb.interpretation import Interpretation
-from regdb.regulation import Regulation
-from regdb_runtime.assessment.alike import Distinctions, distinctions
+from regdb_runtime.assessment.alike import Distinctions, Distinguished
 from regdb_runtime.assessment.assessed import LAWFUL, NO_PLAN, RANKS, UNCERTAIN, UNLAWFUL, Assessed, Violation
 from regdb_runtime.assessment.caps import Caps
 from regdb_runtime.assessment.cross_section import Roads
@@ -28,6 +27,7 @@ from regdb_runtime.planning.goal import SpeedCap
 from regdb_runtime.planning.prediction import Predictions
 from regdb_runtime.scenes.stretch import Stretch
 from regdb_runtime.trajectory import Candidates
+from regdb_runtime.verdict import Verdict
 
 Rows = NDArray[np.intp]
 
@@ -43,8 +43,8 @@ class Assessor:
         self.settings = settings or AssessmentSettings()
         self.interpretation = interpretation
         self._roads = Roads(road_map) if road_map is not None else None
-        self._caps = Caps(self.settings, interpretation)
-        self._distinctions: dict[int, tuple[tuple[Regulation, ...], Distinctions]] = {}
+        self._distinguished = Distinguished()
+        self._caps = Caps(self.settings, interpretation, self._distinguished)
 
     def caps(self, maneuver: Maneuver, stretches: Sequence[Stretch]) -> tuple[SpeedCap, ...]:
         """Speed limits along the path: those in force, and by the strict reading of what is unknown those that may be."""
@@ -69,6 +69,15 @@ class Assessor:
         search = _Search(what, judging, candidates, costs, sweeper or Sweeper(predictions, self.footprint), self.settings)
         return search.best(rows)
 
+    def verdicts(
+        self, maneuver: Maneuver, stretches: Sequence[Stretch], candidates: Candidates, predictions: Predictions, row: int = 0
+    ) -> tuple[tuple[Stretch, Verdict], ...]:
+        """What the law says of one motion, on each stretch that it reaches, whoever it touches: for motion that happened, not chosen among others."""
+        what = self._measuring(maneuver, stretches, candidates, predictions)
+        judging = Judging(maneuver, stretches, [self._distinguish(stretch, maneuver) for stretch in stretches])
+        judged = judging.judge(measure(what, candidates, np.array([row])))
+        return tuple((stretches[group.stretch], group.verdict) for group in judged.of(0))
+
     def _measuring(self, maneuver: Maneuver, stretches: Sequence[Stretch], candidates: Candidates, predictions: Predictions) -> Measuring:
         sections = self._roads.sections(maneuver.lane_path) if self._roads is not None else None
         front = float(candidates.station[0, 0]) + self.footprint.front
@@ -79,12 +88,8 @@ class Assessor:
         )  # fmt: skip
 
     def _distinguish(self, stretch: Stretch, maneuver: Maneuver) -> Distinctions:
-        """What the rules of a transition distinguish, read off once; the database keeps the rules as long as it lives."""
-        rules = stretch.view.concerned(maneuver.current, maneuver.next)
-        found = self._distinctions.get(id(rules))
-        if found is None or found[0] is not rules:
-            found = self._distinctions[id(rules)] = rules, distinctions(rules)
-        return found[1]
+        """What the rules of a transition distinguish."""
+        return self._distinguished.of(stretch.view.concerned(maneuver.current, maneuver.next))
 
 
 class _Search:
@@ -100,7 +105,7 @@ class _Search:
         self.judged = 0
 
     def best(self, rows: Rows) -> Assessed:
-        """The cheapest lawful plan that touches nobody; else the cheapest unknown one; else the one that breaks least."""
+        """The cheapest lawful plan that touches nobody; else of the unknown ones the one that may break least; else the one that breaks least."""
         begin, size = 0, self.settings.first_batch
         while begin < len(rows):
             batch = rows[begin : begin + size]
@@ -113,7 +118,7 @@ class _Search:
                     self.fallen.count(judged, np.flatnonzero((judged.rank != LAWFUL) & (np.arange(len(batch)) < row)))
                     return self._found(batch, judged, row, LAWFUL)
             self.fallen.count(judged, np.flatnonzero(judged.rank != LAWFUL))
-        return self._unknown() or self._least() or self._none()
+        return self._least(UNCERTAIN) or self._least(UNLAWFUL) or self._none()
 
     def _free(self, index: int) -> bool:
         plans = self.candidates
@@ -123,24 +128,17 @@ class _Search:
         self.fallen.touch(str(self.sweeper.predictions.ids[whom]))
         return False
 
-    def _unknown(self) -> Assessed | None:
-        for batch, judged in self.batches:
-            for row in np.flatnonzero(judged.rank == UNCERTAIN).tolist():
-                if self._free(int(batch[row])):
-                    return self._found(batch, judged, row, UNCERTAIN)
-        return None
-
-    def _least(self) -> Assessed | None:
-        """Of unlawful plans the one with the least violation, then cost, then row."""
+    def _least(self, rank: int) -> Assessed | None:
+        """Of the plans of a rank the one with the least violation (of unknown ones: that may be one), then cost, then row."""
         listed = []
         for number, (batch, judged) in enumerate(self.batches):
-            if (judged.rank == UNLAWFUL).any():
-                broken, unlawful = violations(judged, self.settings), np.flatnonzero(judged.rank == UNLAWFUL).tolist()
-                listed += [(broken[row], float(self.costs[batch[row]]), number, row) for row in unlawful]
+            if (judged.rank == rank).any():
+                broken = violations(judged, self.settings, rank)
+                listed += [(broken[row], float(self.costs[batch[row]]), number, row) for row in np.flatnonzero(judged.rank == rank).tolist()]
         for violation, _, number, row in sorted(listed):
             batch, judged = self.batches[number]
             if self._free(int(batch[row])):
-                return self._found(batch, judged, row, UNLAWFUL, violation)
+                return self._found(batch, judged, row, rank, violation)
         return None
 
     def _none(self) -> Assessed:

@@ -11,6 +11,7 @@ from regdb.meaning import UNKNOWN, Judgement
 from regdb.regulation import NO_LIMIT_IN_FORCE, Regulation
 from regdb.situation import Plan, Situation
 from regdb.vocabulary import Value
+from regdb_runtime.assessment.alike import Distinguished
 from regdb_runtime.assessment.judged_facts import decided_by
 from regdb_runtime.assessment.settings import AssessmentSettings
 from regdb_runtime.index.slots import PreparedScene
@@ -31,8 +32,8 @@ REMEMBERED = 1024
 class Caps:
     """Finds what binds the speed on each stretch; the law is asked once for the facts that its speed limits hang on."""
 
-    def __init__(self, settings: AssessmentSettings, profile: Interpretation | None) -> None:
-        self.settings, self.profile = settings, profile
+    def __init__(self, settings: AssessmentSettings, profile: Interpretation | None, distinguished: Distinguished) -> None:
+        self.settings, self.profile, self._distinguished = settings, profile, distinguished
         self._known: dict[tuple[object, ...], tuple[PreparedScene, Cap | None]] = {}
         self._facts: dict[int, tuple[tuple[Regulation, ...], frozenset[str]]] = {}
 
@@ -68,7 +69,7 @@ class Caps:
         """Facts on which speed limits among some rules hang, through whatever defeats them too."""
         held = self._facts.get(id(rules))
         if held is None or held[0] is not rules:
-            held = self._facts[id(rules)] = rules, frozenset(_facts_of_limits(rules))
+            held = self._facts[id(rules)] = rules, frozenset(_facts_of_limits(rules, self._distinguished))
         return held[1]
 
     def _of_law(self, maneuver: Maneuver, stretch: Stretch, shared: Mapping[str, Value]) -> Cap | None:
@@ -102,7 +103,7 @@ _FASTER_THAN_ANY_LIMIT = 100.0
 """m/s at which every limit of a road is broken."""
 
 
-def _facts_of_limits(rules: Sequence[Regulation]) -> set[str]:
+def _facts_of_limits(rules: Sequence[Regulation], distinguished: Distinguished) -> set[str]:
     """Facts that decide whether a limit on speed among these rules is in effect, and its bound."""
     defeaters: dict[str, list[Regulation]] = {}
     for rule in rules:
@@ -115,7 +116,7 @@ def _facts_of_limits(rules: Sequence[Regulation]) -> set[str]:
         if id(rule) not in seen:
             seen[id(rule)] = rule
             queue += defeaters.get(rule.id, [])
-    return {fact for rule in seen.values() for fact in rule.facts} - {SPEED}
+    return {fact for rule in seen.values() for fact in distinguished.facts(rule)} - {SPEED}
 
 
 def _caps_speed(fact: str, direction: str) -> bool:

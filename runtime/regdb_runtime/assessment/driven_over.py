@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from regdb_runtime.assessment.cross_section import CrossSections
 from regdb_runtime.assessment.extents import Extents
 from regdb_runtime.assessment.measured import Bools, Column, number, truth
-from regdb_runtime.assessment.others import Other, beside
+from regdb_runtime.assessment.others import Other, Pass
 from regdb_runtime.assessment.settings import AssessmentSettings
 from regdb_runtime.maneuver import Maneuver
 from regdb_runtime.observation import Footprint
@@ -54,13 +54,12 @@ def _driven(where: Bools, steps: Floats) -> Floats:
     return np.asarray((steps * (where[:, 1:] & where[:, :-1])).sum(axis=1))
 
 
-def shares_lane(sections: CrossSections, plans: Extents, passed: Other, tolerance: float) -> Bools:
+def shares_lane(sections: CrossSections, going: Pass, tolerance: float) -> Bools:
     """Whether some part of the vehicle is in the lane of who is passed, while alongside or, not having come so far, at the plan's end."""
-    strip = _lane_of(sections, passed)
+    strip, plans, level = _lane_of(sections, going.other), going.plans, going.seen
     if strip is None:
         return np.ones(plans.front.shape[0], dtype=np.bool_)
     within = (plans.left - tolerance > strip[0]) & (plans.right + tolerance < strip[1])
-    level = beside(plans, passed)
     return np.asarray(np.where(level.any(axis=1), (within & level).any(axis=1), within[:, -1]))
 
 

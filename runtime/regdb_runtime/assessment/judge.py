@@ -55,7 +55,7 @@ class Judging:
     maneuver: Maneuver
     stretches: Sequence[Stretch]
     distinctions: Sequence[Distinctions]
-    known: dict[tuple[int, int], Verdict] = field(default_factory=dict)
+    known: dict[tuple[int, tuple[str, ...], int], Verdict] = field(default_factory=dict)
 
     def judge(self, facts: PlanFacts) -> Judged:
         """The verdict of every stretch on every plan that reaches it."""
@@ -83,14 +83,14 @@ class Judging:
         stretch = self.stretches[index]
         shared = Plan(self.maneuver.current, self.maneuver.next, {**stretch.roles, **facts.shared, **facts.of_stretch[index].shared})
         situation = Situation(stretch.view.circumstances.vocabulary, stretch.scene, shared)
-        coded, lasting = codes(self.distinctions[index], facts, index, situation)
+        coded, told = codes(self.distinctions[index], facts, index, situation)
         kinds, first, places = np.unique(coded[rows], return_index=True, return_inverse=True)
         for place in np.argsort(first, kind="stable").tolist():
             code = int(kinds[place])
-            held = self.known.get((index, code)) if lasting else None
+            held = self.known.get((index, told, code)) if told is not None else None
             verdict = held or self._verdict(facts, index, int(rows[first[place]]))
-            if lasting:
-                self.known[index, code] = verdict
+            if told is not None:
+                self.known[index, told, code] = verdict
             yield Group(index, verdict, rows[places == place], held is None)
 
     def _verdict(self, facts: PlanFacts, index: int, row: int) -> Verdict:

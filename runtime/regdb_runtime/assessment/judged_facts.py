@@ -10,9 +10,8 @@ from collections.abc import Callable, Mapping
 import numpy as np
 
 from regdb.interpretation import SAFE, Decision, Interpretation
-from regdb_runtime.assessment.extents import Extents
 from regdb_runtime.assessment.measured import Bools, Column, word
-from regdb_runtime.assessment.others import Other, side_gap
+from regdb_runtime.assessment.others import Pass
 from regdb_runtime.assessment.settings import AssessmentSettings
 from regdb_runtime.trajectory import Floats
 
@@ -67,12 +66,12 @@ def following_unsafe(
     return _decided(decision, np.asarray(falls_short & ~restored))
 
 
-def unsafe_pass(decision: Decision, plans: Extents, passed: Other, step: float, speed: Floats, intended: bool) -> Column | None:
+def unsafe_pass(decision: Decision, going: Pass, step: float, speed: Floats) -> Column | None:
     """Whether the gap to the side of what is passed falls short at any instant alongside, (k,). None when the profile does not say."""
-    gap, numbers = side_gap(plans, passed, intended), _numbers(decision)
+    gap, numbers, passed = going.side_gap, _numbers(decision), going.other
     if decision.formula == "rss_lateral":
-        middle = (plans.left + plans.right) / 2
-        own, other = -np.gradient(middle, step, axis=1), -np.gradient(passed.middle, step)
+        middle = (going.plans.left + going.plans.right) / 2
+        own, other = -_rate(middle, step), -_rate(passed.middle, step)
         on_left = middle > passed.middle
         need = _rss_lateral(np.where(on_left, own, other), np.where(on_left, other, own), numbers)
         return _decided(decision, np.asarray((gap < need).any(axis=1)))
@@ -81,6 +80,15 @@ def unsafe_pass(decision: Decision, plans: Extents, passed: Other, step: float, 
         too_fast = (np.isfinite(gap) & (speed > numbers["up_to_speed"])).any(axis=1) if "up_to_speed" in numbers else False
         return _decided(decision, np.asarray(short), np.asarray(~short & too_fast))
     return None
+
+
+def _rate(values: Floats, step: float) -> Floats:
+    """Change per second over the last axis, between each instant and the one before; the first as the second."""
+    found = np.empty_like(values)
+    np.subtract(values[..., 1:], values[..., :-1], out=found[..., 1:])
+    found[..., 0] = found[..., 1]
+    found /= step
+    return found
 
 
 def too_fast_to_stop(decision: Decision, speed: Floats, sight: float) -> Column | None:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
@@ -14,6 +15,8 @@ from regdb_runtime.maps.reference_path import ReferencePath
 from regdb_runtime.planning.prediction import Predictions
 from regdb_runtime.trajectory import Floats
 
+NEAR = 5.0
+"""Metres along the path beyond which the distance is taken to be that length; no law asks for such a distance to the side."""
 SAME_WAY = 0.5
 """Least cosine of the angle to the path at which somebody goes the path's way: within 60 degrees."""
 
@@ -78,27 +81,47 @@ def overtakes(plans: Extents, other: Other, reach: float) -> Bools:
     return np.asarray((level & near).any(axis=1) & gains & (plans.rear[:, 0] < other.front[0]))
 
 
-def alongside(plans: Extents, other: Other, intended: bool) -> Bools:
-    """As `beside`; a pass that is not over when the plan ends goes on beside the other at the plan's last offset, so its last instant counts.
+@dataclass(frozen=True, eq=False)
+class Pass:
+    """Plans that go past one road user. `intended`: the manoeuvre means to pass him.
 
-    An `intended` pass does so even where the plan has not come alongside by then: what it means to do is judged, not only what its horizon shows.
+    A pass that is not over when the plan ends goes on beside him at the plan's last offset, so its last instant counts as alongside; an intended
+    one does so even where the plan has not come up to him by then: what it means to do is judged, not only what its horizon shows.
     """
-    level = beside(plans, other)
-    if intended:
-        level[:, -1] |= plans.rear[:, -1] < other.front[-1]
-    return level
 
+    plans: Extents
+    other: Other
+    intended: bool
 
-def clearance(plans: Extents, other: Other, intended: bool) -> Floats:
-    """Least distance, edge to edge, over the whole pass (see `alongside`), (k,)."""
-    least = distance(plans.boxes, other.boxes).min(axis=1)
-    return np.asarray(np.minimum(least, side_gap(plans, other, intended)[:, -1]))
+    @cached_property
+    def seen(self) -> Bools:
+        """Where the plan's own horizon shows it alongside, (k, T)."""
+        return beside(self.plans, self.other)
 
+    @cached_property
+    def level(self) -> Bools:
+        """Alongside, (k, T)."""
+        if not self.intended:
+            return self.seen
+        level = self.seen.copy()
+        level[:, -1] |= self.plans.rear[:, -1] < self.other.front[-1]
+        return level
 
-def side_gap(plans: Extents, other: Other, intended: bool) -> Floats:
-    """Gap to the side while alongside, infinite else, (k, T)."""
-    gap = np.maximum(np.maximum(plans.right - other.left, other.right - plans.left), 0.0)
-    return np.asarray(np.where(alongside(plans, other, intended), gap, np.inf))
+    @cached_property
+    def side_gap(self) -> Floats:
+        """Gap to the side while alongside, infinite else, (k, T)."""
+        gap = np.maximum(np.maximum(self.plans.right - self.other.left, self.other.right - self.plans.left), 0.0)
+        return np.asarray(np.where(self.level, gap, np.inf))
+
+    @cached_property
+    def clearance(self) -> Floats:
+        """Least distance, edge to edge, over the whole pass, (k,). Where the two are more than `NEAR` apart along the path, that counts."""
+        along = np.maximum(self.other.rear - self.plans.front, self.plans.rear - self.other.front)
+        found = np.where(along > NEAR, along, np.inf)
+        rows, instants = np.nonzero(along <= NEAR)
+        if len(rows):
+            found[rows, instants] = distance(self.plans.boxes[rows, instants], self.other.boxes[instants])
+        return np.asarray(np.minimum(found.min(axis=1), self.side_gap[:, -1]))
 
 
 def gap_behind(plans: Extents, other: Other) -> Floats:

@@ -14,7 +14,7 @@ from regdb_runtime.assessment import driven_over, judged_facts, others
 from regdb_runtime.assessment.cross_section import CrossSections
 from regdb_runtime.assessment.extents import Extents
 from regdb_runtime.assessment.measured import Bools, Column, number, word
-from regdb_runtime.assessment.others import Other
+from regdb_runtime.assessment.others import Other, Pass
 from regdb_runtime.assessment.settings import AssessmentSettings
 from regdb_runtime.maneuver import Maneuver
 from regdb_runtime.observation import Footprint
@@ -57,7 +57,7 @@ def measure(columns: dict[str, Column], what: Passing, plans: Extents, speed: Fl
     gone = [(other, going) for other in what.near if (going := others.overtakes(plans, other, what.settings.passing_range)).any()]
     if not gone:
         return
-    nearest = [(other.kind != "bicycle") * 1e3 + others.clearance(plans, other, intended=False) for other, _ in gone]
+    nearest = [(other.kind != "bicycle") * 1e3 + Pass(plans, other, intended=False).clearance for other, _ in gone]
     order = np.array([np.where(going, away, np.inf) for away, (_, going) in zip(nearest, gone, strict=True)])
     chosen = order.argmin(axis=0)
     for index, (other, going) in enumerate(gone):
@@ -78,22 +78,26 @@ def _fill(columns: dict[str, Column], found: Iterable[tuple[str, Column]], mine:
 
 def _of(what: Passing, passed: Other, plans: Extents, speed: Floats, step: float) -> Iterable[tuple[str, Column]]:
     """Facts of passing one road user, for all plans."""
-    settings, size, intended = what.settings, plans.front.shape[0], passed is what.passed
+    settings, size, going = what.settings, plans.front.shape[0], Pass(plans, passed, passed is what.passed)
     yield "plan.passes", word(np.full(size, PASSED.index(_kind(passed, settings))), PASSED)
-    yield "plan.passing_side", word(_sides(what, passed, plans), SIDES)
-    yield "plan.clearance", number(others.clearance(plans, passed, intended), settings.decimals)
+    yield "plan.passing_side", word(_sides(what, going), SIDES)
+    yield "plan.clearance", number(going.clearance, settings.decimals)
     yield "plan.passing_distance", number(others.passing_distance(plans, passed, speed), settings.decimals)
     if what.sections is not None:
-        within = driven_over.shares_lane(what.sections, plans, passed, settings.line_tolerance)
+        within = driven_over.shares_lane(what.sections, going, settings.line_tolerance)
         yield "plan.passes_in_same_lane", word(within.astype(np.intp), TRUTHS)
         if settings.claims_no_room:
             room = driven_over.no_room(what.sections, plans, passed, what.footprint, what.least_clearance)
             yield "plan.no_room_for_three_feet", word(room.astype(np.intp), TRUTHS)
+    judged: list[tuple[object, Column]] = []
     for fact in ("plan.unsafe_pass", "bicycle.endangered_by_pass"):
         decision = judged_facts.decided_by(what.profile, fact)
-        column = judged_facts.unsafe_pass(decision, plans, passed, step, speed, intended) if decision is not None else None
-        if column is not None:
-            yield fact, column
+        if decision is not None:
+            alike = decision.formula, decision.parameters, decision.true_when
+            column = next((held for key, held in judged if key == alike), None) or judged_facts.unsafe_pass(decision, going, step, speed)
+            if column is not None:
+                judged.append((alike, column))
+                yield fact, column
 
 
 def _kind(passed: Other, settings: AssessmentSettings) -> str:
@@ -101,12 +105,11 @@ def _kind(passed: Other, settings: AssessmentSettings) -> str:
     return "stopped_vehicle" if kind == "vehicle" and float(passed.speed.max()) < settings.standstill else kind
 
 
-def _sides(what: Passing, passed: Other, plans: Extents) -> NDArray[np.intp]:
+def _sides(what: Passing, going: Pass) -> NDArray[np.intp]:
     """The side on which the vehicle is while alongside, else at the plan's end, as a place in SIDES; the manoeuvre's own where it says one."""
-    named = what.maneuver.passing_side
-    if passed is what.passed and named != "none":
+    named, plans = what.maneuver.passing_side, going.plans
+    if going.intended and named != "none":
         return np.full(plans.front.shape[0], SIDES.index(named))
-    level = others.beside(plans, passed)
-    middle = (plans.left + plans.right) / 2 - passed.middle
-    aside = np.where(level.any(axis=1), np.where(level, middle, 0.0).sum(axis=1), middle[:, -1])
+    middle = (plans.left + plans.right) / 2 - going.other.middle
+    aside = np.where(going.seen.any(axis=1), np.where(going.seen, middle, 0.0).sum(axis=1), middle[:, -1])
     return np.asarray(np.where(aside < 0.0, 1, 0), dtype=np.intp)
