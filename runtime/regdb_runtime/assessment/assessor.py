@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -70,12 +71,17 @@ class Assessor:
         return search.best(rows)
 
     def verdicts(
-        self, maneuver: Maneuver, stretches: Sequence[Stretch], candidates: Candidates, predictions: Predictions, row: int = 0
+        self, maneuver: Maneuver, stretches: Sequence[Stretch], candidates: Candidates, predictions: Predictions, doubted: Collection[str] = ()
     ) -> tuple[tuple[Stretch, Verdict], ...]:
-        """What the law says of one motion, on each stretch that it reaches, whoever it touches: for motion that happened, not chosen among others."""
+        """What the law says of the first of the plans, on each stretch that it reaches, whoever it touches: for motion that happened.
+
+        `doubted`: measured facts that are left unknown where they are found true.
+        """
         what = self._measuring(maneuver, stretches, candidates, predictions)
         judging = Judging(maneuver, stretches, [self._distinguish(stretch, maneuver) for stretch in stretches])
-        judged = judging.judge(measure(what, candidates, np.array([row])))
+        facts = measure(what, candidates, np.array([0]))
+        certain = {name: column for name, column in facts.columns.items() if name not in doubted or column.told(0) is not True}
+        judged = judging.judge(replace(facts, columns=certain))
         return tuple((stretches[group.stretch], group.verdict) for group in judged.of(0))
 
     def _measuring(self, maneuver: Maneuver, stretches: Sequence[Stretch], candidates: Candidates, predictions: Predictions) -> Measuring:

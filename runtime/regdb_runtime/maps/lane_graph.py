@@ -69,6 +69,20 @@ class LaneGraph:
         best = min(fits, key=lambda fit: (fit[1], fit), default=None)
         return None if best is None or best[1] > reach else best[3:]
 
+    def lanes_around(self, x: float, y: float, heading: float, reach: float) -> list[tuple[Place, float]]:
+        """Every driven lane whose centre runs within `reach` metres (at most CELL) of a place, by id.
+
+        Each comes with how far `heading` is off its course, radians.
+        """
+        found: dict[str, Place] = {}
+        for across in sorted({math.floor((x - reach) / CELL), math.floor((x + reach) / CELL)}):
+            for up in sorted({math.floor((y - reach) / CELL), math.floor((y + reach) / CELL)}):
+                cell = self._cell((across + 0.5) * CELL, (up + 0.5) * CELL)
+                fits = (cell.fit(index, x, y, heading) for index, name in enumerate(cell.names) if name not in found)
+                found.update((fit[3], fit[3:]) for fit in fits if fit[1] <= reach)
+        places = [found[name] for name in sorted(found)]
+        return [(place, abs(math.remainder(heading - self.heading(place[0], place[1]), math.tau))) for place in places]
+
     @cached_property
     def _boxes(self) -> Floats:
         """Least and greatest x and y of each driven lane (n, 4)."""

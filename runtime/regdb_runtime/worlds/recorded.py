@@ -33,6 +33,8 @@ from regdb_runtime.worlds.replay import Motion, Replay
 REAR_OVERHANG, WHEELBASE = 0.198, 0.583
 """Shares of a vehicle's length: those of `Footprint`'s mid-size car, for vehicles of which only the rectangle was recorded."""
 
+ARROWS = frozenset(("lane.turns", "lane.turn_marked", "lane.designated_for_turn"))
+
 
 class RecordedWorld:
     """A recording with an ego in it. The same spec and plans give the same bytes. Raises MapError, NoRoute and WorldError."""
@@ -42,7 +44,8 @@ class RecordedWorld:
         self.spec, self.replay = spec, Replay(traffic_of(root))
         self._driven = self._recorded_ego(spec)
         self._route = spec.route
-        self._map = scripted_lights(_completed(road_map_of(root), spec, vocabulary), spec.lights, self._route)
+        told = completed(road_map_of(root), spec.place, vocabulary, scripted=spec.eye.kind == "scripted")
+        self._map = scripted_lights(told, spec.lights, self._route)
         self._footprint = spec.footprint if self._driven is None else footprint_of(self._driven)
         self._signals = Signals(self._map) if spec.lights.plan != "none" else None
         self._ego_settings = ego_settings or EgoSettings()
@@ -133,16 +136,17 @@ def ego_of(track: Track, footprint: Footprint) -> EgoState:
     )  # fmt: skip
 
 
-def _completed(road_map: RoadMap, spec: RecordedSpec, vocabulary: Vocabulary) -> RoadMap:
-    """The map with who governs. A scripted eye also scripts what such files never say (street kinds, districts, rails): nothing unusual."""
-    facts = uneventful(vocabulary) if spec.eye.kind == "scripted" else {}
-    return replace(road_map, jurisdiction=road_map.jurisdiction or spec.place, facts={**facts, **road_map.facts})
+def completed(road_map: RoadMap, place: str, vocabulary: Vocabulary, *, scripted: bool) -> RoadMap:
+    """The map with who governs. A script also says what such files never say (districts, rails, school zones): nothing unusual."""
+    facts = uneventful(vocabulary) if scripted else {}
+    return replace(road_map, jurisdiction=road_map.jurisdiction or place, facts={**facts, **road_map.facts})
 
 
 def uneventful(vocabulary: Vocabulary) -> dict[str, Value]:
-    """What a surveyed map says where there is nothing unusual, in the vocabulary's quiet values."""
+    """What a surveyed map says where there is nothing unusual, in the vocabulary's quiet values. Arrows on the lanes are not scripted: such maps
+    have lanes that turn and say nothing of their arrows."""
     quiet = {name: value for name, value in quiet_facts(vocabulary).items() if vocabulary.facts[name].source == "map"}
-    return {**quiet, **surveyed_facts(vocabulary)}
+    return {name: value for name, value in {**quiet, **surveyed_facts(vocabulary)}.items() if name not in ARROWS}
 
 
 def _read_start(text: str) -> datetime.datetime:

@@ -101,8 +101,12 @@ def motion_of(item: RecordedObstacle, step: float, settings: ReplaySettings) -> 
 
 
 def _slopes(time: Floats, values: Floats, window: float) -> Floats:
-    """The slope at each instant: of the straight line fitted to all values within `window` seconds of it."""
-    near = np.abs(time[:, None] - time[None, :]) <= window + 1e-9
+    """The slope at each instant: of the straight line fitted to all values within `window` seconds of it.
+
+    Near the ends of the recording it is that of the first, or last, whole window: half of one would be twice as noisy.
+    """
+    middle = np.clip(time, min(time[0] + window, time.mean()), max(time[-1] - window, time.mean()))
+    near = np.abs(middle[:, None] - time[None, :]) <= window + 1e-9
     count = near.sum(axis=1)
     mean_time, mean_value = near @ time / count, near @ values / count
     away = np.where(near, time[None, :] - mean_time[:, None], 0.0)

@@ -1,0 +1,1 @@
+"""Observer mode (paper, section IV-C): recorded drives judged by perception and strategy, without motion planning."""
