@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 
+import numpy as np
+
 from regdb.condition import linear_value
 from regdb.explanation import show_bound
 from regdb.meaning import UNKNOWN
@@ -12,6 +14,7 @@ from regdb.situation import Situation
 from regdb.units import SI_SYMBOL, unit_named
 from regdb_runtime.assessment.assessed import RANKS
 from regdb_runtime.assessment.judge import Judged, Rows
+from regdb_runtime.assessment.measured import Bools
 from regdb_runtime.decision import Rejection
 from regdb_runtime.verdict import Verdict
 
@@ -29,16 +32,16 @@ class Fallen:
         """Add plans: each counts once for each rule by which it has the rank it has."""
         if not len(rows):
             return
-        out = set(rows.tolist())
-        named: dict[str, tuple[Verdict, Regulation, set[int]]] = {}
+        out = np.zeros(judged.facts.size, dtype=np.bool_)
+        out[rows] = True
+        named: dict[str, tuple[Verdict, Regulation, Bools]] = {}
         for group in judged.groups:
-            rank = RANKS[group.verdict.verdict]
-            fallen = {row for row in group.rows.tolist() if row in out and judged.rank[row] == rank}
-            for rule in group.verdict.deciding if fallen else ():
-                named.setdefault(rule.id, (group.verdict, rule, set()))[2].update(fallen)
-        for name, (verdict, rule, fallen) in named.items():
-            held = self.rules.get(name)
-            self.rules[name] = (verdict, rule, len(fallen)) if held is None else (*held[:2], held[2] + len(fallen))
+            fallen = group.rows[out[group.rows] & (judged.rank[group.rows] == RANKS[group.verdict.verdict])]
+            for rule in group.verdict.deciding if len(fallen) else ():
+                named.setdefault(rule.id, (group.verdict, rule, np.zeros_like(out)))[2][fallen] = True
+        for name, (verdict, rule, plans) in named.items():
+            held, count = self.rules.get(name), int(plans.sum())
+            self.rules[name] = (verdict, rule, count) if held is None else (*held[:2], held[2] + count)
 
     def touch(self, whom: str) -> None:
         """Add a plan that touches a road user."""
