@@ -138,11 +138,14 @@ def _by_stretch(what: Measuring, plans: Extents, speed: Floats) -> tuple[Bools, 
     reached = np.zeros((len(what.stretches), front.shape[0]), dtype=np.bool_)
     found: list[OfStretch] = []
     for index, stretch in enumerate(what.stretches):
-        reached[index] = (last >= stretch.start) if index else True
-        if index and farthest < stretch.start:
+        committed = what.maneuver.commits and stretch.line is not None  # it will get there, wherever its horizon ends
+        reached[index] = (last >= stretch.start) if index and not committed else True
+        if index and not committed and farthest < stretch.start:
             found.append(OfStretch({}, {}))
             continue
         fastest = _fastest(front, speed, stretch.start if index else -np.inf, stretch.end if index + 1 < len(what.stretches) else np.inf)
+        if committed:
+            fastest = np.where(last < stretch.start, speed[:, -1], fastest)
         found.append(_in_stretch(what, stretch, np.where(reached[index], fastest, np.nan), last))
     return reached, found
 
