@@ -21,6 +21,8 @@ BRAKE: Colour = (255, 54, 44)
 AMBER: Colour = (255, 168, 30)
 SKIN: Colour = (196, 148, 118)
 COATS: tuple[Colour, ...] = ((34, 70, 128), (150, 44, 54), (60, 104, 70), (198, 150, 48), (90, 70, 120))
+GROWN_UP = 0.45
+"""Pedestrians shorter than this along, metres, are drawn as children."""
 HEIGHTS: Mapping[str, tuple[float, float]] = {
     "car": (0.85, 1.45), "truck": (1.2, 3.4), "bus": (1.0, 3.1), "obstacle": (0.9, 0.9), "animal": (0.8, 1.4)
 }  # fmt: skip
@@ -136,14 +138,15 @@ def _walker(canvas: Canvas, track: Track) -> None:
     middle, ahead, left = _frame(track)
     coat = COATS[_number(track) % len(COATS)]
     step = 0.28 if track.speed > 0.1 else 0.06
+    size = 0.72 if track.length < GROWN_UP else 1.0
 
     def at(forward: float, aside: float, tall: float) -> Floats:
-        return np.array(middle + ahead * forward + left * aside + np.array([0, 0, tall]))
+        return np.array(middle + (ahead * forward + left * aside + np.array([0, 0, tall])) * size)
 
     for b in (1, -1):
-        canvas.stroke(np.array([at(0, b * 0.1, 0.9), at(b * step / 2, b * 0.1, 0.45), at(b * step, b * 0.1, 0.05)]), 0.15, (48, 50, 60))
-        canvas.stroke(np.array([at(0, b * 0.24, 1.4), at(-b * step / 2, b * 0.28, 1.1), at(-b * step, b * 0.26, 0.85)]), 0.11, coat)
-    canvas.stroke(np.array([at(0, 0.02, 1.38), at(0, 0, 0.95)]), 0.38, coat)
+        canvas.stroke(np.array([at(0, b * 0.1, 0.9), at(b * step / 2, b * 0.1, 0.45), at(b * step, b * 0.1, 0.05)]), 0.15 * size, (48, 50, 60))
+        canvas.stroke(np.array([at(0, b * 0.24, 1.4), at(-b * step / 2, b * 0.28, 1.1), at(-b * step, b * 0.26, 0.85)]), 0.11 * size, coat)
+    canvas.stroke(np.array([at(0, 0.02, 1.38), at(0, 0, 0.95)]), 0.38 * size, coat)
     canvas.disc(at(0.02, 0, 1.63), 0.13, SKIN)
     canvas.disc(at(-0.02, 0, 1.7), 0.115, (58, 42, 32))
 
