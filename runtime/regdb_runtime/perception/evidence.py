@@ -58,12 +58,31 @@ class Reading:
         return {name: tuple(items) for name, items in found.items()}
 
 
+@dataclass(frozen=True, slots=True)
+class Choice:
+    """One answer to a closed question: the fact and value it stands for, and the words that name it."""
+
+    fact: str
+    value: Value
+    label: str
+
+
+@dataclass(frozen=True, slots=True)
+class Question:
+    """A closed question about one thing in the picture, put on a crop of it: which of these look-alikes is it, or none of them?"""
+
+    fact: str
+    choices: tuple[Choice, ...]
+    text: str
+
+
 @dataclass(frozen=True)
 class Snapshot:
     """What perception holds to be so at one instant; immutable, read by the planner without waiting.
 
     `facts`: known ones; `evidence`: fact -> the statements it rests on; `age`: fact -> seconds since the newest of them was captured;
     `silent`: facts that perception should report and does not now; `degraded`: why, in words, empty when all is well.
+    `assumed`: those of `facts` that nobody saw and that do not matter here, at their quiet value; `questions`: what only a closed choice settles.
     """
 
     time: float
@@ -72,3 +91,5 @@ class Snapshot:
     age: Mapping[str, float] = field(default_factory=dict)
     silent: frozenset[str] = frozenset()
     degraded: str = ""
+    assumed: frozenset[str] = frozenset()
+    questions: tuple[Question, ...] = ()
