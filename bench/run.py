@@ -1,7 +1,8 @@
 """Measure everything against its mark, in one run: `python bench/run.py [--quick]`; writes out/bench/results.json.
 
 Absolute times drift between machines and with what else they do; the bare start of Python at the head of the table tells how fast
-this one is now (18 ms where the marks were set). The parts are scripts of their own: decide.py, emit.py, lint_and_compile.py.
+this one is now (18 ms where the marks were set). The parts are scripts of their own: decide.py, drive.py,
+emergency.py, emit.py, lint_and_compile.py, plan.py.
 """
 
 # ruff: noqa: T201  # a script whose result is what it prints
@@ -130,6 +131,32 @@ def emitting(size: int) -> Iterator[Row]:
     yield Row(f"database from {size:,} resolved regulations", data["database_s"], size / 10_000, "s")
 
 
+def planning() -> Iterator[Row]:
+    """Plans sampled, checked, costed and tested for contact, and projection to the path, in plan.py's own run (rivals only where it is told of them)."""
+    print(script("plan.py"), file=sys.stderr)
+    found = json.loads(Path("out/bench/plan.json").read_text("utf-8"))
+    own = found["own_s"]
+    yield Row("1,000 plans: sampled, checked, costed, contact", own["whole"] / own["plans"] * 1e6, 3.0, "ms")
+    yield Row("projection to the path", found["points_per_s"], 2e6, "/s", at_least=True)
+
+
+def braking() -> Iterator[Row]:
+    """The emergency check with 50 road users about, in emergency.py's own run."""
+    print(script("emergency.py"), file=sys.stderr)
+    found = json.loads(Path("out/bench/emergency.json").read_text("utf-8"))
+    slowest = max(item["p99_us"] for what, item in found.items() if "check" in what)
+    yield Row("emergency check among 50 road users, p99", slowest / 1000, 0.3, "ms")
+
+
+def driving(*, quick: bool) -> Iterator[Row]:
+    """Ticks of the planner and the paper's drive, in drive.py's own run."""
+    print(script("drive.py", *(["--quick"] if quick else [])), file=sys.stderr)
+    found = json.loads(Path("out/bench/drive.json").read_text("utf-8"))
+    yield Row("the paper's drive, built-in world", found["paper_times_real"], 30, "x", at_least=True)
+    yield Row("strategic tick of the paper's drive, p99", found["paper_strategic_p99_ms"], 10, "ms")
+    yield Row("motion tick of the paper's drive, p99", found["paper_motion_p99_ms"], 6, "ms")
+
+
 def table(rows: list[Row], bare: float) -> str:
     """One line for each measurement, and a closing one."""
     lines = [f"bare start of Python {bare * 1000:.0f} ms, {os.cpu_count()} cores, Python {platform.python_version()}", ""]
@@ -152,6 +179,7 @@ def main() -> int:
     steps = [
         ("starts", starting(bare)), ("lint", linting()), ("lint and compile", compiling(sizes)),
         ("emission", emitting(1_000 if chosen.quick else 10_000)), ("verdicts", deciding(quick=chosen.quick)),
+        ("planning", planning()), ("the emergency check", braking()), ("the drive", driving(quick=chosen.quick)),
     ]  # fmt: skip
     rows: list[Row] = []
     for name, found in steps:
