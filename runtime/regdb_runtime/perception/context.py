@@ -48,6 +48,7 @@ class Context:
     aside: dict[int, str] = field(default_factory=dict)
     soft: dict[int, str] = field(default_factory=dict)
     colors_aside: dict[int, str] = field(default_factory=dict)
+    over: set[int] = field(default_factory=set)
 
     def why_aside(self, first: int) -> str:
         """Why a phrase that begins at this token is no statement about the scene now; empty when it is one."""
@@ -120,7 +121,7 @@ def _asked(context: Context) -> None:
 def _negation(context: Context, cue: Cue, breaks: set[int]) -> None:
     said = context.said
     at = cue.last + 1
-    if at < len(said) and (said[at] in (",", ".") and cue.first == 0 or said[at] in NO_DENIAL):
+    if at < len(said) and ((said[at] in (",", ".") and cue.first == 0) or said[at] in NO_DENIAL):
         return
     context.denied.update(range(at, _reach(said, at, breaks)))
 
@@ -195,7 +196,7 @@ def _not(context: Context, cue: Cue, breaks: set[int]) -> None:
 def _denied_after(context: Context, cue: Cue, last_of: list[tuple[int, int]], breaks: set[int]) -> None:
     """`traffic lights are not visible`, `pedestrians: none`."""
     said = context.said
-    if said[cue.first] in ("none", "no", "0", "false") and (cue.first == 0 or said[cue.first - 1] not in (":", "-") or cue.last + 1 < len(said) and said[cue.last + 1] not in ",;."):
+    if said[cue.first] in ("none", "no", "0", "false") and (cue.first == 0 or said[cue.first - 1] not in (":", "-") or (cue.last + 1 < len(said) and said[cue.last + 1] not in ",;.")):
         return
     near = [(first, last) for first, last in last_of if last < cue.first and cue.first - last <= AFTER_REACH]
     if not near:
@@ -206,7 +207,7 @@ def _denied_after(context: Context, cue: Cue, last_of: list[tuple[int, int]], br
     reached = edge
     for first, last in sorted(near, key=lambda item: -item[1]):
         between = said[last + 1 : reached]
-        if last == edge or reached - last <= 3 and any(word in _LIST_ENDS or word == "," for word in between):
+        if last == edge or (reached - last <= 3 and any(word in _LIST_ENDS or word == "," for word in between)):
             if any(word in ("status", "state", "color", "phase", "gesture", "legend", "text", "speed", "side", "end") for word in said[max(0, first - 4) : first]):
                 context.aside.setdefault(first, "unsure") if False else None
             else:
@@ -253,10 +254,14 @@ def _future(context: Context, cue: Cue) -> None:
 
 def _ended(context: Context, cue: Cue) -> None:
     said = context.said
+    by_other = any(word in ("pedestrian", "person", "child", "man", "woman", "cyclist") for word in said[: cue.first])
     for at in range(cue.last + 1, min(len(said), cue.last + 5)):
         if said[at] in _STRONG or said[at] in (",", "and", "but"):
             break
-        context.aside.setdefault(at, "ended")
+        if not by_other:
+            context.aside.setdefault(at, "ended")
+    if by_other:
+        context.over.update(range(cue.first, len(said)))
 
 
 def _advice(context: Context, cue: Cue) -> None:

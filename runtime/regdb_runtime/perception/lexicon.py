@@ -17,13 +17,11 @@ GAP = "~"
 """In a phrase: up to `GAP_WORDS` words that are no mark."""
 GAP_WORDS = 4
 NUMBER = "{n}"
-BREAKS = frozenset(',.;:!?()[]\n-"')
+BREAKS = frozenset(",.;:!?()\n-")
+QUOTES = frozenset("\"'[]")
 
 FILLERS = frozenset(
-    """a an the this that these those some any several many few multiple various both all each every our its their his her my your
-    is are was were be been being am s have had currently now already still also very just clearly really quite directly immediately
-    visible immediate apparent obvious other another certain large small big little tall short old new active notable specific particular
-    slowly quickly safely carefully there here fully completely more most discernible single both""".split()
+    ["a", "an", "the", "this", "that", "these", "those", "some", "any", "several", "many", "few", "multiple", "various", "both", "all", "each", "every", "our", "its", "their", "his", "her", "my", "your", "is", "are", "was", "were", "be", "been", "being", "am", "s", "have", "had", "currently", "now", "already", "still", "also", "very", "just", "clearly", "really", "quite", "directly", "immediately", "visible", "immediate", "apparent", "obvious", "other", "another", "certain", "large", "small", "big", "little", "tall", "short", "old", "new", "active", "notable", "specific", "particular", "slowly", "quickly", "safely", "carefully", "there", "here", "fully", "completely", "more", "most", "discernible", "single", "both"]
 )
 """Words a phrase is read over: articles, forms of `be`, adverbs and adjectives that change no fact. Negations are never among them."""
 
@@ -60,6 +58,15 @@ class PhraseError(ValueError):
     """A phrase that cannot be compiled: an unknown word class, or nothing but words that are read over."""
 
 
+_DIGITS = frozenset("0123456789")
+ARTICLES = frozenset(("the", "a", "an"))
+GLUE = frozenset(
+    """at in on near along around from with through behind beside within across toward into by of to for and or is as off over under
+    read say state show cover ahead follow not block obstruct ban prohibit forbid mark designate after before between due {n}""".split()
+)
+"""Words beside which an article changes nothing: prepositions, verbs that take objects."""
+_SOLID = ("vehicle", "person", "light_head", "place")
+"""Word classes whose words no gap passes over: what stands behind them belongs to them."""
 _PIECES = re.compile(r"\{[^}]+\}|[^{]+")
 KEPT = frozenset(("our",))
 """Fillers that count where a phrase names them."""
@@ -76,6 +83,8 @@ class Lexicon:
         self._entries: dict[str, Entry] = {}
         for name, words in classes.items():
             self._add_class(name, words)
+        self.solid = frozenset(word for name in _SOLID for word in self.class_of(name))
+        self.own = self.class_of("own")
         self._starts: dict[str, tuple[dict[str, object], ...]] = {}
 
     def _add_class(self, name: str, words: Iterable[str]) -> None:
@@ -155,42 +164,56 @@ class Lexicon:
             nodes = known.get(word)
             if nodes is None:
                 nodes = starts(word)
-            for node in nodes:
-                self._follow(node, begin, sequence, kept, found)
+            if nodes:
+                if begin and word in self.members and words[kept[begin] - 1] in self.own:
+                    nodes = (self.root[word],) if word in self.root else ()  # type: ignore[assignment]
+                for node in nodes:
+                    self._follow(node, begin, sequence, kept, words, found)
         return found
 
-    def _follow(self, node: dict[str, object], begin: int, sequence: list[str], kept: list[int], found: list[Match]) -> None:
+    def _follow(  # noqa: PLR0913
+        self, node: dict[str, object], begin: int, sequence: list[str], kept: list[int], words: list[str], found: list[Match]
+    ) -> None:
+        """Walk the trie from one token; every end reached is a match."""
         first, size = kept[begin], len(sequence)
-        stack = [(node, begin + 1, 1 << first, first if sequence[begin][0] in "0123456789" else -1, first)]
-        members = self.members
+        stack = [(node, begin + 1, 1 << first, first if sequence[begin][0] in _DIGITS else -1, first)]
+        members, own, solid = self.members, self.own, self.solid
         while stack:
             node, at, mask, number, last = stack.pop()
             entries = node.get(_END)
             if entries is not None:
-                found.extend(Match(entry, first, last, mask, number) for entry in entries)  # type: ignore[attr-defined]
+                for entry in entries:  # type: ignore[attr-defined]
+                    found.append(Match(entry, first, last, mask, number))
                 if len(node) == 1:
                     continue
             if at >= size:
                 continue
             word, place = sequence[at], kept[at]
+            gap = node.get(GAP)
+            if gap is not None:
+                for skipped in range(at, min(size, at + GAP_WORDS + 1)):
+                    stack.append((gap, skipped, mask, number, last))  # type: ignore[arg-type]
+                    if sequence[skipped] in BREAKS or sequence[skipped] in solid:
+                        break
+            if place - last > 1 and words[place - 1] in ARTICLES and not _glued(words[last], word):
+                continue
             following = node.get(word)
             if following is not None:
                 stack.append((following, at + 1, mask | 1 << place, number, place))  # type: ignore[arg-type]
-            if word in members:
+            if word in members and words[place - 1] not in own:
                 for key in members[word]:
                     following = node.get(key)
                     if following is not None:
                         stack.append((following, at + 1, mask | 1 << place, number, place))  # type: ignore[arg-type]
-            if word[0] in "0123456789":
+            if word[0] in _DIGITS:
                 following = node.get(NUMBER)
                 if following is not None:
                     stack.append((following, at + 1, mask | 1 << place, place, place))  # type: ignore[arg-type]
-            following = node.get(GAP)
-            if following is not None:
-                for skipped in range(at, min(size, at + GAP_WORDS + 1)):
-                    stack.append((following, skipped, mask, number, last))  # type: ignore[arg-type]
-                    if sequence[skipped] in BREAKS:
-                        break
+
+
+def _glued(before: str, word: str) -> bool:
+    """Whether an article between these words leaves them one phrase: `in the crosswalk`, `blocking the lane`; not `cross the street`."""
+    return before in GLUE or word in GLUE or before.endswith(("ing", "ed"))
 
 
 def compile_lexicon(vocabulary: Vocabulary) -> Lexicon:

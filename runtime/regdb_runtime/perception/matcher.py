@@ -5,19 +5,22 @@ from __future__ import annotations
 from dataclasses import dataclass
 from functools import partial
 
-from regdb.units import UnitError, to_si
+from regdb.units import UnitError, to_si, unit_named
 from regdb.vocabulary import Value, Vocabulary
 from regdb_runtime.perception.context import Context, context_of
 from regdb_runtime.perception.evidence import Certainty, Reading, Span, Statement
-from regdb_runtime.perception.lexicon import BREAKS, FILLERS, Match, compile_lexicon
+from regdb_runtime.perception.lexicon import BREAKS, FILLERS, GAP, QUOTES, Match, compile_lexicon
 from regdb_runtime.perception.normalise import Normalised, normalise
-from regdb_runtime.perception.relations import LightWords, Shown, lights
+from regdb_runtime.perception.relations import ACTS, PLACES_CROSSED, LightWords, Shown, crossing_is_act, lights
 from regdb_runtime.perception.sentences import Sentence, sentences
+from regdb_runtime.perception.speeds import FACTS as SPEED_FACTS
+from regdb_runtime.perception.speeds import Speed, SpeedWords, speeds
 
 LIGHT_FACTS = ("signal.color", "signal.shape", "signal.flashing", "signal.present")
 """What the relation of light and colour speaks of."""
-LEGEND_WORDS = 9
-"""A text of at most so many tokens is read as a sign's legend."""
+_OF_A_LIGHT = frozenset(("signal.shape", "signal.flashing"))
+"""Said of one light among several: kept for each, with its words."""
+_SPEEDS = frozenset(SPEED_FACTS.values())
 
 
 @dataclass(frozen=True, slots=True)
@@ -38,6 +41,7 @@ class Matcher:
         self.vocabulary = vocabulary
         self._lexicon = compile_lexicon(vocabulary)
         self._lights = LightWords.of(self._lexicon)
+        self._speeds = SpeedWords.of(self._lexicon)
         self._facts = vocabulary.facts
         self._has_lights = bool(self._lights.heads) and all(name in vocabulary for name in LIGHT_FACTS)
         self._entails = {fact.name: tuple(name for name in fact.entails if name in vocabulary) for fact in vocabulary if fact.entails}
@@ -68,8 +72,9 @@ class _SentenceReader:
         self.said: list[_Said] = []
         self.aside: list[tuple[str, int, str]] = []
         self.ends_with_light = False
+        self._decided: dict[int, str] = {}
 
-    def read(self, before: bool) -> None:  # noqa: FBT001
+    def read(self, before: bool) -> None:
         """Find, weigh and record."""
         matcher, words = self.matcher, self.sentence.words
         found = _longest(matcher._lexicon.find(self.sentence), words)
@@ -79,18 +84,38 @@ class _SentenceReader:
                 swallowed |= match.mask
         shown = list(lights(self.sentence, matcher._lights, swallowed, before)) if matcher._has_lights else []
         self.ends_with_light = any(word in matcher._lights.heads for word in words)
-        facts = [match for match in found if match.entry.effects]
-        if not facts and not shown:
+        limits = [found for found in speeds(self.sentence, matcher._speeds) if found.fact in matcher._facts] if self.sentence.numbers else []
+        facts = [match for match in found if match.entry.effects and self._meant(match)]
+        if not facts and not shown and not limits:
             return
+        self._decided = {limit.number: limit.fact for limit in limits}
         denying = 0
-        for match in found:
+        for match in facts:
             denying |= match.mask
         context = context_of(self.sentence, denying, [(match.first, match.last) for match in facts])
         for match in facts:
             self._record(match, context)
         for light in shown:
             self._record_light(light, context)
+        for limit in limits:
+            self._record_speed(limit, context)
         self._settle()
+
+    def _meant(self, match: Match) -> bool:
+        """False for a crossing read as an act where it is a place, and the other way round."""
+        words = self.sentence.words
+        effects = match.entry.effects
+        acts = any(effect.fact in ACTS for effect in effects)
+        if not acts and not any(effect.fact in PLACES_CROSSED for effect in effects):
+            return True
+        for at in range(match.first, match.last + 1):
+            if match.mask >> at & 1 and words[at] in ("crossing", "cross"):
+                if not acts and (at == match.first or words[at - 1] != "pedestrian"):
+                    continue
+                start, end = self.sentence.starts[at - 1], self.sentence.ends[at - 1]
+                if crossing_is_act(words, self.normal.text[start:end] if at else "", at) is not acts:
+                    return False
+        return True
 
     def _record(self, match: Match, context: Context) -> None:
         why = context.why_aside(match.first)
@@ -98,7 +123,7 @@ class _SentenceReader:
         hedged = match.first in context.hedged
         for effect in match.entry.effects:
             value = effect.value if effect.value is not None else self._number(effect.fact, match.number)
-            if value is None:
+            if value is None or (effect.fact in _SPEEDS and self._decided.get(match.number, effect.fact) != effect.fact):
                 continue
             if effect.fact == "signal.color" and not why:
                 why = next((context.colors_aside[at] for at in range(match.first, match.last + 1) if at in context.colors_aside), "")
@@ -117,9 +142,21 @@ class _SentenceReader:
         if fact.kind == "count":
             return int(number.value) if not number.unit and number.value == int(number.value) else None
         try:
-            return to_si(number.value, number.unit or fact.unit) if fact.kind == "quantity" else None
+            unit = unit_named(number.unit or fact.unit)
         except UnitError:
             return None
+        return to_si(number.value, unit.symbol) if fact.kind == "quantity" and unit.dimension == fact.dimension else None
+
+    def _record_speed(self, limit: Speed, context: Context) -> None:
+        first = (limit.mask & -limit.mask).bit_length() - 1
+        value = self._number(limit.fact, limit.number)
+        why = context.why_aside(first) or ("denied" if first in context.denied else "")
+        if value is None:
+            return
+        if why:
+            self.aside.append((limit.fact, limit.mask, why))
+        else:
+            self.said.append(_Said(limit.fact, value, limit.mask, "number on a sign", first in context.hedged))
 
     def _record_light(self, light: Shown, context: Context) -> None:
         first, last = light.anchor, light.mask.bit_length() - 1
@@ -143,9 +180,9 @@ class _SentenceReader:
         for said in tuple(self.said):
             if said.value is not False and said.value != "none":
                 self.said += (_Said(name, True, said.mask, f"{said.rule}, by {said.fact}", said.hedged) for name in self.matcher._entails.get(said.fact, ()))
-        once: dict[tuple[str, Value], _Said] = {}
+        once: dict[tuple[str, Value, int], _Said] = {}
         for said in self.said:
-            key = said.fact, said.value
+            key = said.fact, said.value, said.mask if said.fact in _OF_A_LIGHT else 0
             held = once.get(key)
             if held is None or (held.hedged and not said.hedged):
                 once[key] = said
@@ -179,7 +216,10 @@ def _longest(found: list[Match], words: list[str]) -> list[Match]:
     kept: list[Match] = []
     masks: list[int] = []
     for match in sorted(found, key=lambda match: -match.mask.bit_count()):
-        if match.entry.legend and not _alone(match, words):
+        entry = match.entry
+        if entry.legend and not _alone(match, words):
+            continue
+        if not entry.effects and GAP not in entry.phrase and match.mask.bit_count() != match.last - match.first + 1:
             continue
         mask = match.mask
         if any(mask & other == mask and mask != other for other in masks):
@@ -192,6 +232,6 @@ def _longest(found: list[Match], words: list[str]) -> list[Match]:
 def _alone(match: Match, words: list[str]) -> bool:
     """Whether the phrase is a legend: all of the sentence, or between quotation marks, or before the word `sign`."""
     before, after = match.first - 1, match.last + 1
-    opened = before < 0 or words[before] in BREAKS
-    closed = after >= len(words) or words[after] in BREAKS or words[after] == "sign"
-    return closed and (opened or words[min(after, len(words) - 1)] == "sign")
+    opened = before < 0 or words[before] in BREAKS or words[before] in QUOTES
+    closed = after >= len(words) or words[after] in BREAKS or words[after] in QUOTES
+    return (opened and closed) or (after < len(words) and words[after] == "sign")

@@ -5,18 +5,16 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass
 
-from regdb_runtime.perception.lexicon import BREAKS, FILLERS, Lexicon, Match
+from regdb_runtime.perception.lexicon import BREAKS, FILLERS, Lexicon
 from regdb_runtime.perception.sentences import Sentence
 
 LINKS = frozenset(
-    """is are was were be being been remain remaining remained stay show showing shown showed display displaying displayed turn turning turned
-    indicate indicating indicated become became change changing changed appear appearing seem seeming look looking go going went stay staying
-    read reading lit illuminated flash flashing flashed glow glowing glowed have having has switch switched switching shine shining shone with in to emit emitting at""".split()
+    ["is", "are", "was", "were", "be", "being", "been", "remain", "remaining", "remained", "stay", "show", "showing", "shown", "showed", "display", "displaying", "displayed", "turn", "turning", "turned", "indicate", "indicating", "indicated", "become", "became", "change", "changing", "changed", "appear", "appearing", "seem", "seeming", "look", "looking", "go", "going", "went", "stay", "staying", "read", "reading", "lit", "illuminated", "flash", "flashing", "flashed", "glow", "glowing", "glowed", "have", "having", "has", "switch", "switched", "switching", "shine", "shining", "shone", "with", "in", "to", "emit", "emitting", "at"]
 )
 """Between a light and its colour: `the light IS red`, `SHOWING green`."""
-_LEFT_WORDS = frozenset("solid steady circular round bright illuminated lit flashing blinking single large traffic left right straight turn turning and or , / bold clear vertical horizontal pointing signal light arrow color colored hue hued lamp led".split())
-_FLASHING = frozenset("flashing blinking flash blink flashed".split())
-_PRONOUNS = frozenset("it they which that both".split())
+_LEFT_WORDS = frozenset(["solid", "steady", "circular", "round", "bright", "illuminated", "lit", "flashing", "blinking", "single", "large", "traffic", "left", "right", "straight", "turn", "turning", "and", "or", ",", "/", "bold", "clear", "vertical", "horizontal", "pointing", "signal", "light", "arrow", "color", "colored", "hue", "hued", "lamp", "led"])
+_FLASHING = frozenset(["flashing", "blinking", "flash", "blink", "flashed"])
+_PRONOUNS = frozenset(["it", "they", "which", "that", "both"])
 _FORWARD = 14
 """Tokens after a light within which its colour is looked for."""
 
@@ -47,7 +45,7 @@ class LightWords:
         return cls(lexicon.class_of("light_head"), lexicon.class_of("light_arrow"), colors)
 
 
-def lights(sentence: Sentence, words: LightWords, swallowed: int, before: bool) -> Iterator[Shown]:  # noqa: FBT001
+def lights(sentence: Sentence, words: LightWords, swallowed: int, before: bool) -> Iterator[Shown]:
     """Every colour a light of the sentence is said to show. `before`: the sentence before ended speaking of a light."""
     said = sentence.words
     heads = [at for at, word in enumerate(said) if (word in words.heads or word in words.arrows) and not swallowed >> at & 1]
@@ -107,9 +105,7 @@ def _right(said: list[str], head: int, following: int, words: LightWords) -> Ite
             found.append(at)
         elif word in LINKS:
             linked = True
-        elif at >= following and word in words.heads | words.arrows and not found:
-            break
-        elif found and word not in FILLERS and word not in ("and", "or", ",", "to", "then", "/", "from", "not", "but", "turn", "turning", "turned", "before", "change", "changed"):
+        elif (at >= following and word in words.heads | words.arrows and not found) or (found and word not in FILLERS and word not in ("and", "or", ",", "to", "then", "/", "from", "not", "but", "turn", "turning", "turned", "before", "change", "changed")):
             break
     yield from found
 
@@ -125,6 +121,29 @@ def _colors_another(said: list[str], at: int, words: LightWords) -> bool:
 
 
 THINGS = frozenset(
-    "car truck van bus sedan suv vehicle sign building shirt jacket tree curb cone barrier line bicycle motorcycle taxi umbrella roof wall bag hat sport brick flag banner coat dress pickup trailer".split()
+    ["car", "truck", "van", "bus", "sedan", "suv", "vehicle", "sign", "building", "shirt", "jacket", "tree", "curb", "cone", "barrier", "line", "bicycle", "motorcycle", "taxi", "umbrella", "roof", "wall", "bag", "hat", "sport", "brick", "flag", "banner", "coat", "dress", "pickup", "trailer"]
 )
 """Things whose colour is not a light's."""
+
+
+ACTS = frozenset(("pedestrian.on_roadway", "pedestrian.in_crosswalk"))
+PLACES_CROSSED = frozenset(("crosswalk.present", "sign.pedestrian_crossing"))
+"""What `crossing` can mean beside a person: what the person does, or where."""
+_OBJECTS = frozenset("the a an this that our its my another in at from slowly quickly street road highway intersection lane outside without between { [ avenue main both one two 1 2 east west north south".split())
+_NOUN_BEFORE = frozenset("the a an this that marked zebra railroad railway level grade designated school nearest raised signalized unsignalized painted at grade train".split())
+_UNREAL = frozenset("to can may will should must could would might and".split())
+_STARTED = frozenset("start started starting begin began beginning begun seen continue".split())
+
+
+def crossing_is_act(said: list[str], raw: str, at: int) -> bool:
+    """Whether the `cross` or `crossing` at this token is what a person does. `raw`: the token before it as written."""
+    before = said[at - 1] if at else ""
+    if said[at] == "crossing":
+        if before in _NOUN_BEFORE:
+            return False
+        if before == "pedestrian" and raw == "pedestrian":
+            return at + 1 < len(said) and said[at + 1] in _OBJECTS
+        return not (at + 1 < len(said) and said[at + 1] in ("sign", "zone", "area", "guard", "signal", "light"))
+    if said[at] == "cross" and before in _UNREAL:
+        return before == "to" and at > 1 and said[at - 2] in _STARTED
+    return True

@@ -8,12 +8,12 @@ from dataclasses import dataclass
 from regdb_runtime.perception.normalise import Normalised
 
 _TOKEN = re.compile(r"km/h|mi/h|[^\W\d_]+(?:'[^\W\d_]+)?|\d+(?:[.,]\d+)*|[.,;:!?()\[\]\n\"/&%+]|(?<!\w)'|'(?!\w)|(?<=\s)-+(?=\s)")
-_ABBREVIATED = frozenset("st ave blvd rd dr mr mrs ms approx etc e.g i.e eg ie vs hwy dept jr sr inc ft no".split())
+_ABBREVIATED = frozenset(["st", "ave", "blvd", "rd", "dr", "mr", "mrs", "ms", "approx", "etc", "e.g", "i.e", "eg", "ie", "vs", "hwy", "dept", "jr", "sr", "inc", "ft", "no"])
 _STOPS = frozenset(".!?\n")
 
 _ONES = {word: n for n, word in enumerate(
-    "zero one two three four five six seven eight nine ten eleven twelve thirteen fourteen fifteen sixteen seventeen eighteen nineteen".split())}  # fmt: skip
-_TENS = {word: 10 * n for n, word in enumerate("twenty thirty forty fifty sixty seventy eighty ninety".split(), 2)}
+    ["zero", "one", "two", "three", "four", "five", "six", "seven", "eight", "nine", "ten", "eleven", "twelve", "thirteen", "fourteen", "fifteen", "sixteen", "seventeen", "eighteen", "nineteen"])}  # fmt: skip
+_TENS = {word: 10 * n for n, word in enumerate(["twenty", "thirty", "forty", "fifty", "sixty", "seventy", "eighty", "ninety"], 2)}
 _UNITS = {
     "mph": "mph", "mi/h": "mph", "km/h": "km/h", "kmh": "km/h", "kph": "km/h", "kmph": "km/h", "km": "km/h", "kms": "km/h",
     "ft": "ft", "foot": "ft", "feet": "ft", "meter": "m", "metre": "m", "m": "m", "yard": "yd", "inch": "in", "percent": "%", "%": "%",
@@ -83,8 +83,8 @@ class Sentence:
 
 
 def tokens(text: str) -> list[str]:
-    """The tokens of a phrase, in their one form."""
-    return [FORMS[word] for word in _TOKEN.findall(text)]
+    """The tokens of a phrase, in their one form; number words as digits, as in sentences."""
+    return [str(_ONES[word]) if word in _ONES else FORMS[word] for word in _TOKEN.findall(text)]
 
 
 def sentences(normal: Normalised) -> list[Sentence]:
@@ -115,10 +115,10 @@ def _goes_on(text: str, before: str, after: int) -> bool:
     if after < len(text) and text[after].isalnum():
         return True
     rest = text[after : after + 2].strip()
-    return (before in _ABBREVIATED and before != "no" or len(before) == 1 and before.isalpha() and before != "i") and bool(rest)
+    return ((before in _ABBREVIATED and before != "no") or (len(before) == 1 and before.isalpha() and before != "i")) and bool(rest)
 
 
-def _sentence(words: list[str], starts: list[int], ends: list[int], ending: str, numeric: bool) -> Sentence:  # noqa: FBT001
+def _sentence(words: list[str], starts: list[int], ends: list[int], ending: str, numeric: bool) -> Sentence:
     if not numeric:
         return Sentence(words, starts, ends, {}, ending)
     return _with_numbers(words, starts, ends, ending)
