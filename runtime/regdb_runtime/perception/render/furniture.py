@@ -74,9 +74,9 @@ def draw_sign(canvas: Canvas, code: str, number: str, place: tuple[float, float]
     base, right = facing(place, heading)
     if float((canvas.camera.place - base) @ np.array([math.cos(heading), math.sin(heading), 0.0])) > 0:
         return
-    number, canvas.owner = canvas.owner, -1  # the post is no part of the sign
+    owner, canvas.owner = canvas.owner, -1  # the post is no part of the sign
     canvas.stroke(np.array([base, base + np.array([0, 0, height + 0.3])]), 0.07, POST)
-    canvas.owner = number
+    canvas.owner = owner
     wide, low, high = face.width / 2, height, height + face.height
     corners = [base + right * b * wide + np.array([0, 0, z]) for b, z in ((-1, high), (1, high), (1, low), (-1, low))]
     canvas.face(np.array(corners), picture)
