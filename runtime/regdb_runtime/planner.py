@@ -41,7 +41,8 @@ SLOW_DOWN = "emergency_stop.slow_down"
 class Planner:
     """Drives one vehicle along one route. Holds what it remembers between ticks; not shared between threads.
 
-    `route`: ids of lanes, one per segment, as a world names them, or a `Route`. `predictor` says where others will be (default: constant velocity).
+    `route`: ids of lanes, one per segment, as a world names them, or a `Route`. `predictor` says where others will be (default: along
+    their lanes at the speed they have).
     """
 
     def __init__(

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from regdb_runtime.maneuver import Maneuver
@@ -47,15 +48,17 @@ def car_following(picture: Picture, step: Step) -> Maneuver:
 
 
 def stop(picture: Picture, step: Step) -> Maneuver:
-    """Stop with the front bumper at the line, and stay."""
+    """Stop with the front bumper at the line, and stay; past the line, but short of the junction, there."""
     junction = picture.junction
     if junction is None or not picture.handling:
         return refuse(picture, step, "no_junction")
-    if _inside(picture, junction):
+    if picture.front > junction.entrance - picture.settings.stop_margin and _inside(picture, junction):
         return refuse(picture, step, "past_line")
     if picture.lead is not None and _waits_before(picture, junction):
         return refuse(picture, step, f"lead:{picture.lead.track.id}")
     point = stop_point(picture.memory.stop, junction, picture.front, picture.settings)
+    if _inside(picture, junction):
+        point = replace(point, station=junction.entrance, margin=picture.settings.stop_margin)
     goal = Goal((0.0,), picture.settings.cruise_speed, picture.curves, point, follow(picture.lead))
     return _maneuver(picture, step, goal, junction, commits=False)
 

@@ -6,12 +6,12 @@ from collections.abc import Callable
 from dataclasses import replace
 from typing import Literal
 
-from regdb_runtime.maneuver import Maneuver
+from regdb_runtime.maneuver import LanePath, Maneuver
 from regdb_runtime.observation import TurnSignal
 from regdb_runtime.planning.goal import Follow, Goal, StopPoint
 from regdb_runtime.strategy.machine import Step
 from regdb_runtime.strategy.picture import Picture, follow
-from regdb_runtime.strategy.surroundings import in_strip, place
+from regdb_runtime.strategy.surroundings import Placed, in_strip, place
 
 Build = Callable[[Picture, Step], Maneuver]
 
@@ -20,8 +20,8 @@ def keep_lane(
     picture: Picture, step: Step, following: Follow | None = None, signal: TurnSignal = "off", stop: StopPoint | None = None,
     biases: tuple[tuple[str, float], ...] = (), refused: str = "",
 ) -> Maneuver:  # fmt: skip
-    """Along the own lane, behind what is followed, to a stop where one is given (the path's end else)."""
-    goal = Goal((0.0,), picture.settings.cruise_speed, picture.curves, stop or picture.end, following)
+    """Along the own lane, behind what is followed, to a stop where one is given (else to where no crossing is meant to go on)."""
+    goal = Goal((0.0,), picture.settings.cruise_speed, picture.curves, stop or picture.halt, following)
     return Maneuver(
         step.current, step.next, picture.lane, picture.lane_path, goal, signal,
         lead=None if following is None else following.track, junction=picture.junction, refused=refused, via=step.via, biases=biases,
@@ -53,11 +53,7 @@ def car_following(picture: Picture, step: Step) -> Maneuver:
 
 def slow_down(picture: Picture, step: Step) -> Maneuver:
     """Ease out of an emergency: along the lane, no faster than now, and not over a line ahead."""
-    junction = picture.junction
-    stop = None
-    if junction is not None and picture.handling and picture.front <= junction.stop_station:
-        stop = StopPoint(junction.stop_station, f"stop:{junction.id}", picture.settings.stop_slack, picture.settings.stop_margin)
-    found = keep_lane(picture, step, follow(picture.lead), stop=stop)
+    found = keep_lane(picture, step, follow(picture.lead))
     return replace(found, goal=replace(found.goal, cruise_speed=min(picture.speed, found.goal.cruise_speed)))
 
 
@@ -68,9 +64,24 @@ def prepare(side: Literal["left", "right"]) -> Build:
         refused = _no_change(picture, side)
         if refused:
             return refuse(picture, step, refused)
-        return keep_lane(picture, step, follow(picture.lead), side, biases=_needed(picture))
+        found = keep_lane(picture, step, follow(picture.lead), side, biases=_needed(picture))
+        blocker = _blocker(picture, side)
+        if blocker is None:
+            return found
+        slower = max(min(blocker.along, picture.speed) - picture.settings.open_gap, picture.settings.open_gap)
+        return replace(found, goal=replace(found.goal, cruise_speed=min(slower, found.goal.cruise_speed)))
 
     return build
+
+
+def _blocker(picture: Picture, side: Literal["left", "right"]) -> Placed | None:
+    """Who drives beside and keeps the vehicle from changing: it falls back behind him."""
+    half = float(picture.here.widths.min()) / 2
+    strip = (half, 3 * half) if side == "left" else (-3 * half, -half)
+    settings = picture.settings
+    rear, front = picture.rear - settings.lane_change_gap_behind, picture.front + settings.lane_change_gap_ahead
+    beside = in_strip(picture.placed, *strip, rear, front)
+    return next((item for item in beside if item.along > 0.5), None)
 
 
 def change(side: Literal["left", "right"]) -> Build:
@@ -105,13 +116,21 @@ def into_lane(
     refused = f"gap:{beside[0].track.id}" if beside and picture.memory.target_lane is None else ""
     ahead = next((item for item in others if item.rear > front - 1.0 and item.left > -half and item.right < half), None)
     ahead = ahead if ahead is not None and picture.is_near_at(ahead, front) else None
-    goal = Goal((0.0,), settings.cruise_speed, picture.paths.curves(path), picture.paths.end(path, front), follow(ahead))
+    goal = Goal((0.0,), settings.cruise_speed, picture.paths.curves(path), _halt(picture, path, front, rear), follow(ahead))
     over = offset > -settings.settled_offset if side == "left" else offset < settings.settled_offset
     return Maneuver(
         step.current, step.next, picture.lane, path, goal, side, target, passes, side if passes else "none",
         None if ahead is None else ahead.track.id, picture.paths.junction(path, rear), refused=refused or ("settled" if over else ""),
         via=step.via, biases=(*biases, ("move", -settings.move)),
     )  # fmt: skip
+
+
+def _halt(picture: Picture, path: LanePath, front: float, rear: float) -> StopPoint | None:
+    """`Picture.halt` on the target lane's path."""
+    junction = picture.paths.junction(path, rear)
+    if picture.halt is None or picture.halt is picture.end or junction is None or front > junction.stop_station:
+        return picture.paths.end(path, front)
+    return replace(picture.halt, station=junction.stop_station)
 
 
 def _go_on(picture: Picture, step: Step, side: Literal["left", "right"]) -> Maneuver:
@@ -125,7 +144,7 @@ def _go_on(picture: Picture, step: Step, side: Literal["left", "right"]) -> Mane
 
 def _no_change(picture: Picture, side: Literal["left", "right"]) -> str:
     """Why no change of lane to a side is made, empty when it is needed now."""
-    if picture.need.side != side:
+    if picture.need.side != side or picture.inside:
         return "route"
     if picture.beside(side) is None:
         return "no_lane"

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -14,12 +14,13 @@ from regdb_runtime.maneuver import Maneuver
 from regdb_runtime.observation import EgoState, Footprint, Observation, Track, TurnSignal
 from regdb_runtime.planning.choice import choose
 from regdb_runtime.planning.contacts import Sweeper
-from regdb_runtime.planning.prediction import ConstantVelocity, Predictions, Predictor
+from regdb_runtime.planning.prediction import Predictions, Predictor
 from regdb_runtime.scenes.history import History
 from regdb_runtime.scenes.stretch import Stretch
 from regdb_runtime.scenes.stretches import Scenes
 from regdb_runtime.strategy.evaluation import Evaluated, Evaluator, failed
 from regdb_runtime.strategy.events import ZoneWatch, state_events, zone_events
+from regdb_runtime.strategy.lane_prediction import AlongLanes
 from regdb_runtime.strategy.machine import Machine
 from regdb_runtime.strategy.maneuvers import Strategist
 from regdb_runtime.strategy.memory import Memory
@@ -27,6 +28,7 @@ from regdb_runtime.strategy.paths import paths_of
 from regdb_runtime.strategy.picture import Picture
 from regdb_runtime.strategy.placing import placed
 from regdb_runtime.strategy.planner_settings import PlannerSettings
+from regdb_runtime.strategy.reroute import reroute
 from regdb_runtime.trajectory import Trajectory
 
 if TYPE_CHECKING:
@@ -61,6 +63,7 @@ class Mind:
         self._times = np.arange(settings.lattice.points, dtype=np.float64) * settings.lattice.step
         self._free_speed: float | None = None
         self._watch = ZoneWatch()
+        self._rerouted = False
         self._judged: tuple[Observation, Memory, Maneuver, tuple[Stretch, ...], tuple[Track, ...]] | None = None
 
     @property
@@ -70,7 +73,7 @@ class Mind:
 
     def think(self, observation: Observation, memory: Memory, start: EgoState, strategic: bool) -> Thought:
         """One tick: among all states that may follow, or in the state in force alone; if that has no lawful plan, among all after all."""
-        picture = self.strategist.picture(observation, memory, self._free_speed)
+        picture = self._picture(observation, memory)
         self.history.update(observation, picture.lane_path, picture.junction)
         predictions = self.predictor.predict(self._mattering(picture), self._times)
         if not strategic:
@@ -86,7 +89,7 @@ class Mind:
         `plan` needs `time`, `x`, `y`, `heading`, `speed`, `acceleration`, `jerk` and `curvature`; it is placed on the manoeuvre's path here.
         """
         if self._judged is None or self._judged[0] is not observation or self._judged[1] is not memory:
-            picture = self.strategist.picture(observation, memory, self._free_speed)
+            picture = self._picture(observation, memory)
             maneuver = self.strategist.own(picture)
             stretches = self.evaluator.scenes.stretches(observation, maneuver, self.history)
             self._judged = observation, memory, maneuver, stretches, self._mattering(picture)
@@ -95,6 +98,19 @@ class Mind:
         candidates = placed(plan, maneuver.lane_path.path)
         nobody = Sweeper(self.predictor.predict((), plan.time), self.evaluator.footprint)
         return self.evaluator.assessor.best(maneuver, stretches, candidates, [0], [0.0], observation, predictions, [True], nobody)
+
+    def _picture(self, observation: Observation, memory: Memory) -> Picture:
+        """Where the vehicle is; on another route from now on, when the change of lane that this one needs is missed."""
+        picture = self.strategist.picture(observation, memory, self._free_speed)
+        missed = picture.need.changes > 0 and picture.need.room <= self.settings.strategy.reroute_distance
+        if not missed or memory.target_lane is not None:
+            return picture
+        strategist = self.strategist
+        route = reroute(strategist.road_map, picture.lane, strategist.route)
+        paths = paths_of(strategist.road_map, route, strategist.footprint, strategist.settings)
+        self.strategist = replace(strategist, route=route, paths=paths)
+        self._rerouted = True
+        return self.strategist.picture(observation, memory, self._free_speed)
 
     def _evaluate(
         self, maneuvers: tuple[Maneuver, ...], picture: Picture, start: EgoState, predictions: Predictions
@@ -131,7 +147,8 @@ class Mind:
         plan = taken.report.trajectory
         brakes = 0.0 if plan is None else float(plan.acceleration[: 1 + round(0.5 / self.settings.lattice.step)].min())
         self._watch, seen = zone_events(self._watch, taken.caps, front, brakes)
-        return (*state_events(before, after, picture.offset, settled), *seen)
+        new_route, self._rerouted = ("rerouted",) if self._rerouted else (), False
+        return (*new_route, *state_events(before, after, picture.offset, settled), *seen)
 
     def _mattering(self, picture: Picture) -> tuple[Track, ...]:
         """All road users but those behind in the own lane: they keep their distance from us, not we from them."""
@@ -155,6 +172,6 @@ def make_mind(
     evaluator = Evaluator(
         scenes, assessor, footprint, settings.lattice, settings.limits, settings.comfortable, settings.beyond_comfort, settings.cost
     )  # fmt: skip
-    return Mind(strategist, evaluator, scenes.history(), predictor or ConstantVelocity(), settings)
+    return Mind(strategist, evaluator, scenes.history(), predictor or AlongLanes(paths.graph, paths.built), settings)
 
 

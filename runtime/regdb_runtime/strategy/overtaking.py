@@ -141,7 +141,7 @@ def _in_lane(picture: Picture, step: Step, slow: Placed) -> Maneuver:
     beyond = picture.ahead(offsets[0], slow.track.id)
     if beyond is not None and not picture.is_near(beyond):
         beyond = None
-    goal = Goal(tuple(offsets), settings.cruise_speed, picture.curves, picture.end, follow(beyond))
+    goal = Goal(tuple(offsets), settings.cruise_speed, picture.curves, picture.halt, follow(beyond))
     return Maneuver(
         step.current, step.next, picture.lane, picture.lane_path, goal, "off", None, slow.track.id, "left",
         None if beyond is None else beyond.track.id, picture.junction, via=step.via,

@@ -133,6 +133,18 @@ class Picture:
         found = graph.left(self.lane) if side == "left" else graph.right(self.lane)
         return found if found is not None and self.route.segment_of(found) is not None and is_driven(self.road_map.lanes[found]) else None
 
+    @property
+    def inside(self) -> bool:
+        """Whether the front bumper is past the line of the junction that is being handled."""
+        return self.handling and self.junction is not None and self.front > self.junction.stop_station
+
+    @cached_property
+    def halt(self) -> StopPoint | None:
+        """Where a manoeuvre that is no crossing ends at the latest: the line of the junction being handled, else the path's end."""
+        if not self.handling or self.junction is None or self.inside:
+            return self.end
+        return StopPoint(self.junction.stop_station, f"stop:{self.junction.id}", self.settings.stop_slack, self.settings.stop_margin)
+
     @cached_property
     def end(self) -> StopPoint | None:
         """The end of the path, where it lies within what is planned: the destination, or where the route cannot be followed further."""

@@ -93,6 +93,11 @@ class StrategySettings:
     lane_change_gap_behind: float = 6.0
     """Metres to others in the target lane below which no change is begun; what is safe beyond that, law and prediction decide."""
 
+    open_gap: float = 2.0
+    """m/s by which the vehicle goes slower than who keeps it from a change of lane that the route needs."""
+    reroute_distance: float = 25.0
+    """Metres before a junction at which a change of lane that has not come about is given up for another route, from the lane that is driven in."""
+
     need_lane: float = 40.0
     """Metres of advance (the unit of all that follows): what a change of lane that the route needs is worth at last; a quarter at first."""
     lane_change_cost: float = 2.0

@@ -28,6 +28,11 @@ class Placed:
     across: float
 
     @property
+    def crosses(self) -> bool:
+        """Whether it goes across the path rather than along it: nobody to be followed."""
+        return abs(self.across) > max(1.0, abs(self.along))
+
+    @property
     def offset(self) -> float:
         """Offset of its middle."""
         return (self.left + self.right) / 2
@@ -66,6 +71,8 @@ def lead(
     half = footprint.width / 2
     for item in placed:
         beside = half + (margins[1] if item.track.kind in RIDERS and item.along > 0.5 else margins[0])
+        if item.crosses:
+            continue
         if item.rear > front - 1.0 and item.right < offset + beside and item.left > offset - beside and item.track.id != passed:
             return item
     return None
