@@ -36,11 +36,15 @@ class Effect:
 
 @dataclass(slots=True)
 class Entry:
-    """One phrase; one without effects swallows the shorter ones in it. `legend`: it counts only as the whole of a sentence, quotation or sign."""
+    """One phrase; one without effects swallows the shorter ones in it. `legend`: it counts only as the whole of a sentence, quotation or sign.
+
+    `crossing`: whether it speaks of somebody crossing, and of a place to cross.
+    """
 
     phrase: str
     effects: list[Effect] = field(default_factory=list)
     legend: bool = False
+    crossing: tuple[bool, bool] = (False, False)
 
 
 @dataclass(slots=True)
@@ -80,7 +84,7 @@ class Lexicon:
         self.root: dict[str, object] = {}
         self.members: dict[str, tuple[str, ...]] = {}
         self.longer: dict[str, list[list[str]]] = {}
-        self._entries: dict[str, Entry] = {}
+        self.entries: dict[str, Entry] = {}
         for name, words in classes.items():
             self._add_class(name, words)
         self.solid = frozenset(word for name in _SOLID for word in self.class_of(name))
@@ -104,9 +108,9 @@ class Lexicon:
 
     def add(self, phrase: str, effect: Effect | None = None) -> None:
         """Compile one phrase. Raises PhraseError."""
-        entry = self._entries.get(phrase)
+        entry = self.entries.get(phrase)
         if entry is None:
-            entry = self._entries[phrase] = Entry(phrase, [], phrase.startswith("^"))
+            entry = self.entries[phrase] = Entry(phrase, [], phrase.startswith("^"))
             for path in self._paths(phrase):
                 self._insert(path, entry)
         if effect is not None and effect not in entry.effects:
@@ -159,7 +163,7 @@ class Lexicon:
         kept = [at for at, word in enumerate(words) if word not in FILLERS]
         sequence = [words[at] for at in kept]
         found: list[Match] = []
-        starts, known = self.starts, self._starts
+        starts, known, size = self.starts, self._starts, len(sequence)
         for begin, word in enumerate(sequence):
             nodes = known.get(word)
             if nodes is None:
@@ -167,8 +171,11 @@ class Lexicon:
             if nodes:
                 if begin and word in self.members and words[kept[begin] - 1] in self.own:
                     nodes = (self.root[word],) if word in self.root else ()  # type: ignore[assignment]
+                following = sequence[begin + 1] if begin + 1 < size else ","
+                open_ended = following in self.members or following[0] in _DIGITS
                 for node in nodes:
-                    self._follow(node, begin, sequence, kept, words, found)
+                    if open_ended or following in node or _END in node or GAP in node:
+                        self._follow(node, begin, sequence, kept, words, found)
         return found
 
     def _follow(  # noqa: PLR0913
@@ -188,13 +195,15 @@ class Lexicon:
                     continue
             if at >= size:
                 continue
-            word, place = sequence[at], kept[at]
             gap = node.get(GAP)
             if gap is not None:
                 for skipped in range(at, min(size, at + GAP_WORDS + 1)):
-                    stack.append((gap, skipped, mask, number, last))  # type: ignore[arg-type]
-                    if sequence[skipped] in BREAKS or sequence[skipped] in solid:
+                    word = sequence[skipped]
+                    if word in gap or word in members or word[0] in _DIGITS:  # type: ignore[operator]
+                        stack.append((gap, skipped, mask, number, last))  # type: ignore[arg-type]
+                    if word in BREAKS or word in solid:
                         break
+            word, place = sequence[at], kept[at]
             if place - last > 1 and words[place - 1] in ARTICLES and not _glued(words[last], word):
                 continue
             following = node.get(word)

@@ -42,6 +42,9 @@ class Matcher:
         self._lexicon = compile_lexicon(vocabulary)
         self._lights = LightWords.of(self._lexicon)
         self._speeds = SpeedWords.of(self._lexicon)
+        for entry in self._lexicon.entries.values():
+            said = {effect.fact for effect in entry.effects}
+            entry.crossing = not said.isdisjoint(ACTS), not said.isdisjoint(PLACES_CROSSED)
         self._facts = vocabulary.facts
         self._has_lights = bool(self._lights.heads) and all(name in vocabulary for name in LIGHT_FACTS)
         self._entails = {fact.name: tuple(name for name in fact.entails if name in vocabulary) for fact in vocabulary if fact.entails}
@@ -104,9 +107,8 @@ class _SentenceReader:
     def _meant(self, match: Match) -> bool:
         """False for a crossing read as an act where it is a place, and the other way round."""
         words = self.sentence.words
-        effects = match.entry.effects
-        acts = any(effect.fact in ACTS for effect in effects)
-        if not acts and not any(effect.fact in PLACES_CROSSED for effect in effects):
+        acts, places = match.entry.crossing
+        if not acts and not places:
             return True
         for at in range(match.first, match.last + 1):
             if match.mask >> at & 1 and words[at] in ("crossing", "cross"):

@@ -14,6 +14,8 @@ _STOPS = frozenset(".!?\n")
 _ONES = {word: n for n, word in enumerate(
     ["zero", "one", "two", "three", "four", "five", "six", "seven", "eight", "nine", "ten", "eleven", "twelve", "thirteen", "fourteen", "fifteen", "sixteen", "seventeen", "eighteen", "nineteen"])}  # fmt: skip
 _TENS = {word: 10 * n for n, word in enumerate(["twenty", "thirty", "forty", "fifty", "sixty", "seventy", "eighty", "ninety"], 2)}
+_NUMBERS = frozenset(_ONES) | frozenset(_TENS)
+_DIGITS = frozenset("0123456789")
 _UNITS = {
     "mph": "mph", "mi/h": "mph", "km/h": "km/h", "kmh": "km/h", "kph": "km/h", "kmph": "km/h", "km": "km/h", "kms": "km/h",
     "ft": "ft", "foot": "ft", "feet": "ft", "meter": "m", "metre": "m", "m": "m", "yard": "yd", "inch": "in", "percent": "%", "%": "%",
@@ -89,24 +91,21 @@ def tokens(text: str) -> list[str]:
 
 def sentences(normal: Normalised) -> list[Sentence]:
     """Split at `.`, `!`, `?` and line ends, not after an abbreviation."""
-    found: list[Sentence] = []
-    words: list[str] = []
+    text = normal.text
+    raw: list[str] = []
     starts: list[int] = []
-    ends: list[int] = []
-    numeric = False
-    for match in _TOKEN.finditer(normal.text):
-        word = match[0]
-        if word in _STOPS and not (word == "." and words and _goes_on(normal.text, words[-1], match.end())):
-            if words:
-                found.append(_sentence(words, starts, ends, word, numeric))
-                words, starts, ends, numeric = [], [], [], False
-            continue
-        numeric = numeric or word[0] in "0123456789" or word in _ONES or word in _TENS
-        words.append(FORMS[word])
+    for match in _TOKEN.finditer(text):
+        raw.append(match[0])
         starts.append(match.start())
-        ends.append(match.end())
-    if words:
-        found.append(_sentence(words, starts, ends, "", numeric))
+    found: list[Sentence] = []
+    begin = 0
+    for at, word in enumerate(raw):
+        if word in _STOPS and not (word == "." and at > begin and _goes_on(text, raw[at - 1], starts[at] + 1)):
+            if at > begin:
+                found.append(_sentence(raw[begin:at], starts[begin:at], word))
+            begin = at + 1
+    if begin < len(raw):
+        found.append(_sentence(raw[begin:], starts[begin:], ""))
     return found
 
 
@@ -118,8 +117,11 @@ def _goes_on(text: str, before: str, after: int) -> bool:
     return ((before in _ABBREVIATED and before != "no") or (len(before) == 1 and before.isalpha() and before != "i")) and bool(rest)
 
 
-def _sentence(words: list[str], starts: list[int], ends: list[int], ending: str, numeric: bool) -> Sentence:
-    if not numeric:
+def _sentence(raw: list[str], starts: list[int], ending: str) -> Sentence:
+    forms = FORMS
+    words = [forms[word] for word in raw]
+    ends = [start + len(word) for start, word in zip(starts, raw, strict=True)]
+    if _NUMBERS.isdisjoint(raw) and not any(word[0] in _DIGITS for word in raw):
         return Sentence(words, starts, ends, {}, ending)
     return _with_numbers(words, starts, ends, ending)
 
@@ -148,7 +150,7 @@ def _with_numbers(words: list[str], starts: list[int], ends: list[int], ending: 
 
 def _number(words: list[str], at: int) -> tuple[float | None, int]:
     word = words[at]
-    if word[0] in "0123456789":
+    if word[0] in _DIGITS:
         plain = word.replace(",", "") if re.fullmatch(r"\d{1,3}(,\d{3})+(\.\d+)?", word) else word.replace(",", ".")
         return (float(plain) if plain.count(".") <= 1 else None), at + 1
     if word in _TENS:
