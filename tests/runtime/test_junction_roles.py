@@ -228,3 +228,14 @@ def test_what_will_be_seen_in_time_to_stop_need_not_be_seen_yet(reach: float, fr
     stretch = next(item for item in street.stretches(APPROACH, APPROACH) if item.stage == "approach")
     assert told(stretch, "intersection.exit_blocked") is expected
     assert told(stretch, "pedestrian.in_crosswalk") is expected
+
+
+def test_who_has_entered_is_let_out_again() -> None:
+    street = Street(cross(), WAYS["right"])
+    behind = [car("crossing", -1.75, 40.0, SOUTH, 10.0)]
+    street.see(194.0, 0.0, behind, lights=RED)
+    assert street.first(STOP, RIGHT).roles["movement.hazard"] is True
+    street.see(206.0, 4.0, behind, lights=RED)
+    assert street.first(RIGHT, RIGHT).roles["movement.hazard"] is False
+    street.see(206.0, 4.0, [car("crossing", -1.75, 16.0, SOUTH, 12.0)], lights=RED)
+    assert street.first(RIGHT, RIGHT).roles["movement.hazard"] is True

@@ -26,7 +26,8 @@ class Entering:
     """A junction with those on their way into it: `ways` that meet the plan's, `arriving` on them.
 
     `limits`: posted speed of a way by its lane. `stopped`: lanes of ways whose traffic a sign stops. `green`: the signal lets the vehicle go, with
-    everybody from other highways held by his own; `protected`: by an arrow, which holds oncoming traffic too.
+    everybody from other highways held by his own; `protected`: by an arrow, which holds oncoming traffic too. `within`: the vehicle has
+    entered already, and whoever has not must let it clear the junction (CVC 21451(a), 21800(a)).
     """
 
     junction: Junction
@@ -37,6 +38,7 @@ class Entering:
     stopped: frozenset[str]
     green: bool
     protected: bool
+    within: bool
     distance: float
     """From the front bumper to the junction's entrance, metres (negative: past it)."""
 
@@ -69,8 +71,8 @@ def _approaches(look: Look, item: Arriving) -> bool:
 
 
 def _is_held(look: Look, entering: Entering, item: Arriving) -> bool:
-    """Whether a signal or sign stops somebody before his line, and he can still stop there."""
-    held = item.way.lane in entering.stopped or (entering.protected if item.way.comes_from == "oncoming" else entering.green)
+    """Whether a signal, a sign or the vehicle in the junction stops somebody before his line, and he can still stop there."""
+    held = entering.within or item.way.lane in entering.stopped or (entering.protected if item.way.comes_from == "oncoming" else entering.green)
     return held and not item.inside and item.track.speed**2 <= 2 * look.settings.held_braking * item.to_entrance
 
 

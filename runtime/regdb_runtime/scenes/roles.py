@@ -198,7 +198,8 @@ class Viewpoint:
         stopped = frozenset(way.lane for way in crossings.ways if self.scenes.road_map.lanes[way.lane].control in ("stop", "all_way_stop"))
         return Entering(
             junction, crossings.ways, limits, self.instant.arriving(crossings), self.history.past.arrivals, stopped, green,
-            green and self.signal.get("signal.shape") == "arrow", junction.entrance - self.around.front,
+            green and self.signal.get("signal.shape") == "arrow", self.history.past.line == junction.id and self.history.past.crossed,
+            junction.entrance - self.around.front,
         )  # fmt: skip
 
     def turn(self, standing: Mapping[str, Value]) -> dict[str, Value]:
