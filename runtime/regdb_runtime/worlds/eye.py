@@ -109,7 +109,7 @@ class RecordedEye:
         ordered = sorted(reports, key=lambda report: report[0])
         self._times = [time for time, _ in ordered]
         self._reports = [{name: value for name, value in facts.items() if name in own} for _, facts in ordered]
-        self._silent = [own - facts.keys() for facts in self._reports]
+        self._silent = [own.difference(facts) for facts in self._reports]
         self._nothing = own
         self._valid_for = valid_for
 
