@@ -10,7 +10,7 @@ from regdb_runtime.scenes.merging import merge
 
 TRACKS = "tracks"
 """In `Observation.silent`: no list of road users is kept, so what the eye says of roles stands alone."""
-NEVER = frozenset(("clock", "plan", "history", "motion", "maneuver", "nobody", "ego"))
+NEVER = frozenset(("clock", "plan", "history", "motion", "nobody", "ego"))
 """Tellers whose facts perception does not tell."""
 
 

@@ -62,11 +62,6 @@ JUNCTION_FACTS: frozenset[str] = frozenset((
 MOTION_FACTS: frozenset[str] = frozenset(("ego.speed", "ego.turn_signal"))
 """The vehicle's speed now, and the signal the candidate gives."""
 
-MANEUVER_FACTS: frozenset[str] = frozenset((
-    "plan.exit_lane", "plan.passes", "plan.passing_side", "plan.prepares_turn", "plan.turn_lane", "plan.turn_purpose",
-))  # fmt: skip
-"""What the candidate is, before any of its plans is sampled."""
-
 UNTOLD: Mapping[str, str] = MappingProxyType({
     "ego.cruising_notice": "papers that officers hand over do not reach the planner",
     "lead.no_room_to_enter": "how much room another needs to enter is a judgement, and no interpretation decides it yet",
@@ -76,14 +71,14 @@ UNTOLD: Mapping[str, str] = MappingProxyType({
 
 _TOLD: Mapping[str, frozenset[str]] = MappingProxyType({
     "light": LIGHT_FACTS, "posted": MAP_FACTS, "track": TRACK_FACTS, "judged": JUDGED_FACTS, "lane": LANE_FACTS, "junction": JUNCTION_FACTS,
-    "motion": MOTION_FACTS, "maneuver": MANEUVER_FACTS, "nobody": frozenset(UNTOLD),
+    "motion": MOTION_FACTS, "nobody": frozenset(UNTOLD),
 })  # fmt: skip
 _OWN = MappingProxyType({"ego": "ego", "map": "map", "perception": "eye", "clock": "clock", "plan": "plan", "history": "history"})
 
 
 @lru_cache(maxsize=8)
 def tellers(vocabulary: Vocabulary) -> Mapping[str, str]:
-    """Fact -> its one teller: `light`, `posted` (limit and signs on the map), `track`, `judged`, `lane`, `junction`, `motion`, `maneuver`,
+    """Fact -> its one teller: `light`, `posted` (limit and signs on the map), `track`, `judged`, `lane`, `junction`, `motion`,
     `nobody`, else by the fact's source `map` (its own words: lanes, zones, the whole map), `ego`, `eye`, `clock`, `history`, `plan` (measured)."""
     found = {fact.name: _OWN[fact.source] for fact in vocabulary}
     found.update({name: teller for teller, names in _TOLD.items() for name in names if name in found})
