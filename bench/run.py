@@ -132,7 +132,7 @@ def emitting(size: int) -> Iterator[Row]:
 
 
 def planning() -> Iterator[Row]:
-    """Plans sampled, checked, costed and tested for contact, and projection to the path, in plan.py's own run (rivals only where it is told of them)."""
+    """Plans sampled, checked, costed and tested for contact, and projection to the path, in plan.py's own run; its rivals are for it alone."""
     print(script("plan.py"), file=sys.stderr)
     found = json.loads(Path("out/bench/plan.json").read_text("utf-8"))
     own = found["own_s"]

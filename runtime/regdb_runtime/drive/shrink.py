@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from dataclasses import replace
+from typing import Any
 
 from regdb_runtime.worlds.scene_spec import SceneSpec
 
@@ -30,14 +31,19 @@ def _without(spec: SceneSpec) -> Iterator[SceneSpec]:
     """Scenes that lack something: first all of a kind, then one at a time, then signs, zones and sightings."""
     for name in PARTS:
         if len(getattr(spec, name)) > 1:
-            yield replace(spec, **{name: ()})
+            yield _with(spec, name, ())
     for name in PARTS:
         items = getattr(spec, name)
         for index in range(len(items)):
-            yield replace(spec, **{name: (*items[:index], *items[index + 1 :])})
+            yield _with(spec, name, (*items[:index], *items[index + 1 :]))
     for index in range(len(spec.streets.zones)):
         zones = spec.streets.zones
         yield replace(spec, streets=replace(spec.streets, zones=(*zones[:index], *zones[index + 1 :])))
     for index in range(len(spec.eye.sightings)):
         sightings = spec.eye.sightings
         yield replace(spec, eye=replace(spec.eye, sightings=(*sightings[:index], *sightings[index + 1 :])))
+
+
+def _with(spec: SceneSpec, name: str, items: tuple[Any, ...]) -> SceneSpec:
+    changes: dict[str, Any] = {name: items}
+    return replace(spec, **changes)

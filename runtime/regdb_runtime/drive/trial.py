@@ -7,16 +7,17 @@ standstill without stated reason.
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field
 from typing import Literal
 
 from regdb_runtime.database import RegulationDatabase
 from regdb_runtime.decision import Decision
 from regdb_runtime.drive.downtrack import Downtrack
+from regdb_runtime.drive.run import Steps
 from regdb_runtime.maps.road_map import RoadMap
 from regdb_runtime.observation import Observation
-from regdb_runtime.planner import Planner, PlannerSettings
+from regdb_runtime.planner import Planner
 from regdb_runtime.worlds.built_in.world import BuiltInWorld
 from regdb_runtime.worlds.scene_spec import SceneSpec
 
@@ -78,12 +79,14 @@ class _Seen:
 
 
 def trial(
-    spec: SceneSpec, database: RegulationDatabase, settings: TrialSettings | None = None, planner_settings: PlannerSettings | None = None
-) -> Outcome:
-    """Drive a scene in the built-in world until its time is over, the route ends, or the vehicle has collided."""
+    spec: SceneSpec, database: RegulationDatabase, settings: TrialSettings | None = None,
+    driver: Callable[[BuiltInWorld], Steps] | None = None,
+) -> Outcome:  # fmt: skip
+    """Drive a scene in the built-in world until its time is over, the route ends, or the vehicle has collided. `driver` makes whatever decides;
+    without it, our planner."""
     settings = settings or TrialSettings()
     world = BuiltInWorld(spec, database.vocabulary)
-    planner = Planner(database, world.road_map, world.route, world.footprint, planner_settings)
+    planner = driver(world) if driver is not None else Planner(database, world.road_map, world.route, world.footprint)
     watch = _Watch(world, settings)
     while world.time < settings.seconds - 1e-9 and not world.contacts and not watch.arrived:
         observation = world.observe()
