@@ -3,12 +3,14 @@ PYTHON ?= python3
 VENV := .venv
 BIN := $(VENV)/bin
 READY := $(VENV)/.ready
+LOCAL_VLM := $(VENV)/.local-vlm
 
-.PHONY: demo test check law bench docs drives quick clean help
+.PHONY: demo test check law bench docs drives quick clean help local-vlm
 
 help:
 	@echo "make demo    lint, test and compile the shipped codes, and decide the paper's situations"
 	@echo "make test    run every test"
+	@echo "make local-vlm   install torch and transformers, for the tests of the local vision client (1 GB)"
 	@echo "make check   style, types, layers, and everything make law does"
 	@echo "make law     lint, form, tests, boundaries, ledger and mutation score of codes/"
 	@echo "make bench   measure, in ratios of one run, against the marks"
@@ -21,6 +23,12 @@ $(READY): pyproject.toml
 	$(BIN)/python -m pip install --quiet --disable-pip-version-check --upgrade 'pip>=25.1'
 	$(BIN)/python -m pip install --quiet --disable-pip-version-check --editable '.[all]' --group dev
 	@touch $(READY)
+
+$(LOCAL_VLM): $(READY)
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check --group local-vlm
+	@touch $(LOCAL_VLM)
+
+local-vlm: $(LOCAL_VLM)
 
 demo: $(READY)
 	$(BIN)/regdb demo -o out

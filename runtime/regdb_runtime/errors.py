@@ -11,6 +11,7 @@ RegdbRuntimeError
 ├── OutsideDomain          a point that a reference path cannot place
 ├── LogError               a file that is no log of a drive
 ├── WorldError             a scene, or a record of perception, that cannot be built
+├── ModelError             a vision model that cannot be loaded
 └── MissingExtra           an optional library is needed; says what to type
 """
 
@@ -61,6 +62,10 @@ class NoRoute(RegdbRuntimeError):  # noqa: N818
 
 class WorldError(RegdbRuntimeError, ValueError):
     """A scene, or a record of perception, that no world can be built from; the message names the place in it."""
+
+
+class ModelError(RegdbRuntimeError):
+    """A vision model that is not on this machine, or that this machine cannot run; the message says what to do."""
 
 
 class MissingExtra(RegdbRuntimeError):  # noqa: N818

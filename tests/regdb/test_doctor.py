@@ -2,6 +2,7 @@
 
 import sqlite3
 import sys
+import tomllib
 from importlib import metadata
 from pathlib import Path
 from typing import Any
@@ -47,6 +48,15 @@ def test_a_missing_package_is_named_with_what_to_type(monkeypatch: pytest.Monkey
     assert "MISSING scipy                 not installed; type: pip install 'scipy>=1.11'" in out
     assert "-       extra [compiler]      lacks lark; type: pip install 'regdb[compiler]'" in out
     assert "lacks lark; type: pip install 'regdb[all]'" in out
+
+
+def test_every_extra_is_looked_at(root: Path) -> None:
+    project = tomllib.loads((root / "pyproject.toml").read_text("utf-8"))["project"]
+    lines = _lines()
+    for extra in project["optional-dependencies"]:
+        line = lines[f"extra [{extra}]"]
+        assert line.fine or f"type: pip install 'regdb[{extra}]'" in line.found
+    assert {"vlm", "local-vlm"} <= project["optional-dependencies"].keys()
 
 
 def test_regdb_itself_may_not_be_installed(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -9,6 +9,7 @@ import time
 from typing import Any
 
 import pytest
+from camera_frames import FRAME
 from PIL import Image
 from regdb_runtime.errors import MissingExtra, RequestError
 from regdb_runtime.perception import openai_client
@@ -22,17 +23,6 @@ SCHEMA = {"type": "object", "properties": {"seen": {"type": "array"}}}
 LATE = 0.05
 """Seconds by which a call may outlast its deadline."""
 
-
-def picture(width: int = 1920, height: int = 1080) -> bytes:
-    """A JPEG frame with a red square in it."""
-    image = Image.new("RGB", (width, height), (90, 110, 130))
-    image.paste((220, 20, 20), (width // 2, height // 4, width // 2 + 60, height // 4 + 60))
-    out = io.BytesIO()
-    image.save(out, "JPEG")
-    return out.getvalue()
-
-
-FRAME = Frame("f1", 12.5, picture(), width=1920, height=1080)
 PROMPT = Prompt("Examine the current driving scenario.")
 
 

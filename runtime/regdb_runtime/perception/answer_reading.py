@@ -39,7 +39,8 @@ def read_answer(
     """All that an answer says, with the places in its text; a failure says nothing.
 
     Text that shows itself as JSON is never read as prose: in `{"not_seen": ["stop si` the words of a denial would stand as an assertion.
-    What is cut off, contradicts itself, names no fact, or stands beside the answer is set aside with the reason.
+    What is cut off (also the last sentence of prose: `a pedestrian` may have been going to end in `is not there`), contradicts itself, names
+    no fact, or stands beside the answer is set aside with the reason.
     """
     text = description.text
     if description.failure or not text.strip():
@@ -52,7 +53,12 @@ def read_answer(
         return Reading(text, (), (("answer", Span(0, len(text)), "JSON that cannot be read"),))
     if matcher is None:
         return Reading(text)
-    return matcher.read(text, asked.captured, asked.frame, asked.prompt, asked.model)
+    if not description.cut:
+        return matcher.read(text, asked.captured, asked.frame, asked.prompt, asked.model)
+    whole = max(text.rfind(mark) for mark in ".!?\n") + 1
+    read = matcher.read(text[:whole], asked.captured, asked.frame, asked.prompt, asked.model)
+    rest = Span(whole, len(text))
+    return Reading(text, read.statements, (*read.set_aside, *((("…", rest, "cut off"),) if text[whole:].strip() else ())))
 
 
 class _Answer:

@@ -44,7 +44,8 @@ class Prompt:
 
 @dataclass(frozen=True, slots=True)
 class Description:
-    """An answer or a failure; never both empty. `took`: wall-clock seconds of the call."""
+    """An answer or a failure; never both empty. `took`: wall-clock seconds of the call. `cut`: the answer ran into its greatest length, so that
+    its last sentence is not whole."""
 
     text: str
     failure: Failure = ""
@@ -52,6 +53,7 @@ class Description:
     took: float = 0.0
     model: str = ""
     usage: Mapping[str, int] = field(default_factory=dict)
+    cut: bool = False
 
 
 class Describer(Protocol):

@@ -200,13 +200,15 @@ class OpenAIDescriber:
         """The text of the first choice. Raises _Refused for another shape."""
         try:
             answer = json.loads(told)
-            text = _text(answer["choices"][0]["message"]["content"])
-        except (ValueError, KeyError, IndexError, TypeError, RecursionError):
+            choice = answer["choices"][0]
+            text, cut = _text(choice["message"]["content"]), choice.get("finish_reason") == "length"
+        except (ValueError, KeyError, IndexError, TypeError, AttributeError, RecursionError):
             shown = " ".join(told[:80].decode("utf-8", "replace").split())
             raise _Refused("malformed", f"no chat completion: {shown or 'an empty body'}") from None
         if not text.strip():
             raise _Refused("malformed", "the model said nothing")
-        return Description(text, took=took, model=str(answer.get("model") or self.settings.model), usage=_usage(answer.get("usage")))
+        model = str(answer.get("model") or self.settings.model)
+        return Description(text, took=took, model=model, usage=_usage(answer.get("usage")), cut=cut)
 
 
 def _profile(settings: ServerSettings) -> ServerProfile:

@@ -53,7 +53,7 @@ class Entry:
             {
                 "version": VERSION, "frame": self.frame, "prompt_hash": self.prompt_hash, "captured": self.captured, "id": self.id,
                 "name": self.name, "prompt": self.prompt, "text": found.text, "failure": found.failure, "detail": found.detail,
-                "took": found.took, "model": found.model, "usage": dict(found.usage),
+                "took": found.took, "model": found.model, "usage": dict(found.usage), "cut": found.cut,
             },
             ensure_ascii=False,
         )  # fmt: skip
@@ -67,7 +67,7 @@ class Entry:
         if failure not in get_args(Failure):
             raise ValueError(f"{failure!r} is no failure")
         usage = {str(name): int(count) for name, count in raw["usage"].items()}
-        said = Description(str(raw["text"]), failure, str(raw["detail"]), float(raw["took"]), str(raw["model"]), usage)
+        said = Description(str(raw["text"]), failure, str(raw["detail"]), float(raw["took"]), str(raw["model"]), usage, bool(raw["cut"]))
         return cls(str(raw["frame"]), str(raw["prompt_hash"]), float(raw["captured"]), said, str(raw["prompt"]), str(raw["name"]), str(raw["id"]))
 
 
