@@ -29,6 +29,7 @@ from regdb_runtime.strategy.picture import Picture
 from regdb_runtime.strategy.placing import placed
 from regdb_runtime.strategy.planner_settings import PlannerSettings
 from regdb_runtime.strategy.reroute import reroute
+from regdb_runtime.strategy.sampling import Moment, Sampler
 from regdb_runtime.trajectory import Trajectory
 
 if TYPE_CHECKING:
@@ -96,7 +97,7 @@ class Mind:
         _, _, maneuver, stretches, tracks = self._judged
         predictions = self.predictor.predict(tracks, plan.time)
         candidates = placed(plan, maneuver.lane_path.path)
-        nobody = Sweeper(self.predictor.predict((), plan.time), self.evaluator.footprint)
+        nobody = Sweeper(self.predictor.predict((), plan.time), self.strategist.footprint)
         return self.evaluator.assessor.best(maneuver, stretches, candidates, [0], [0.0], observation, predictions, [True], nobody)
 
     def _picture(self, observation: Observation, memory: Memory) -> Picture:
@@ -116,12 +117,11 @@ class Mind:
         self, maneuvers: tuple[Maneuver, ...], picture: Picture, start: EgoState, predictions: Predictions
     ) -> tuple[Evaluated, ...]:
         """Each on its own: one that raises falls out and says so, the others stay."""
-        found, sweeper = [], Sweeper(predictions, self.evaluator.footprint, self.settings.margin)
+        found, sweeper = [], Sweeper(predictions, picture.footprint, self.settings.margin)
+        moment = Moment(picture.observation, self.history, start, predictions, sweeper, picture.free_speed)
         for maneuver in maneuvers:
             try:
-                found.append(
-                    self.evaluator.evaluate(maneuver, start, picture.observation, self.history, predictions, sweeper, picture.free_speed)
-                )
+                found.append(self.evaluator.evaluate(maneuver, moment))
             except Exception as error:  # noqa: BLE001  # fails closed: no plan of this candidate
                 found.append(failed(maneuver, error))
         return tuple(found)
@@ -169,9 +169,8 @@ def make_mind(
     strategist = Strategist(Machine(database.machine), road_map, route, footprint, settings.strategy, paths)
     scenes = Scenes(road_map, database, footprint, interpretation=profile)
     assessor = Assessor(database, footprint, interpretation=profile, road_map=road_map)
-    evaluator = Evaluator(
-        scenes, assessor, footprint, settings.lattice, settings.limits, settings.comfortable, settings.beyond_comfort, settings.cost
-    )  # fmt: skip
+    sampler = Sampler(footprint, settings.lattice, settings.limits, settings.comfortable, settings.beyond_comfort, settings.cost)
+    evaluator = Evaluator(scenes, assessor, sampler)
     return Mind(strategist, evaluator, scenes.history(), predictor or AlongLanes(paths.graph, paths.built), settings)
 
 
