@@ -5,7 +5,6 @@ import tomllib
 from pathlib import Path
 
 import pytest
-
 from regdb_runtime.errors import MissingExtra
 
 ROOT = Path(__file__).resolve().parents[2]

@@ -69,13 +69,6 @@ def answer_schema(facts: Iterable[Fact], limits: AnswerLimits | None = None) -> 
     return {"type": "object", "properties": properties, "required": [SEEN], "additionalProperties": False}
 
 
-def closed_choice(fact: Fact, others: Iterable[Fact]) -> Mapping[str, Any]:
-    """The schema of one question among look-alikes: exactly one of their names, or `none` of them."""
-    names = [name for item in (fact, *others) if can_be_asked(item) for name in names_of(item)]
-    one = {"type": "array", "items": {"type": "string", "enum": [*names, NOTHING]}, "minItems": 1, "maxItems": 1}
-    return {"type": "object", "properties": {SEEN: one}, "required": [SEEN], "additionalProperties": False}
-
-
 def _names(names: list[str], most: int) -> dict[str, Any]:
     items: dict[str, Any] = {"type": "string", "enum": names} if names else {"type": "string", "maxLength": 64}
     return {"type": "array", "items": items, "maxItems": min(most, len(names)) if names else 0}

@@ -14,7 +14,8 @@ from regdb_runtime.observation import EgoState, Provenance
 from regdb_runtime.perception.answer_reading import ReadsText, read_answer
 from regdb_runtime.perception.describer import Closing, Describer, Description, Frame
 from regdb_runtime.perception.evidence import Reading, Snapshot
-from regdb_runtime.perception.loop_core import AsksPrompts, Attention, Call, Health, LoopCore, LoopSettings, degraded, is_silent
+from regdb_runtime.perception.loop_core import AsksPrompts, Attention, Call, Health, Locate, LoopCore, LoopSettings, degraded
+from regdb_runtime.perception.questions import answer
 
 
 class Fuses(Protocol):
@@ -24,30 +25,34 @@ class Fuses(Protocol):
         """Take in what one answer said. `travelled`: metres since the run began, where the frame was taken; `now`: seconds, when it was read."""
         ...
 
-    def snapshot(self, now: float, travelled: float) -> Snapshot:
-        """What holds now, here."""
+    def snapshot(self, now: float, travelled: float, relevant: frozenset[str] | None = None) -> Snapshot:
+        """What holds now, here; `relevant`: the facts that matter here, None for all."""
         ...
 
 
 @dataclass(frozen=True)
 class Belief:
-    """What turns descriptions into a snapshot. `tells`: the facts that perception is to report; they are silent while it does not."""
+    """What turns descriptions into a snapshot."""
 
     fusion: Fuses
     matcher: ReadsText | None
     vocabulary: Vocabulary
-    tells: frozenset[str] = frozenset()
 
-    def read(self, call: Call, description: Description) -> Reading:
-        """The statements of one answer, captured when its frame was."""
-        return read_answer(description, self.matcher, self.vocabulary, call.frame, call.prompt)
+    def read(self, call: Call, description: Description, provenance: Provenance) -> Reading:
+        """The statements of one answer, captured when its frame was; those of a script are labelled so."""
+        if call.question is not None:
+            found = answer(call.question, description.text, call.frame.captured, call.frame.id, description.model)
+        else:
+            found = read_answer(description, self.matcher, self.vocabulary, call.frame, call.prompt)
+        if provenance != "scripted":
+            return found
+        return replace(found, statements=tuple(replace(item, source="scripted") for item in found.statements))
 
-    def snapshot(self, health: Health, settings: LoopSettings, now: float, travelled: float) -> Snapshot:
-        """The fusion's snapshot with what the loop knows: why perception is degraded, and what is silent because nothing is answered."""
-        found = self.fusion.snapshot(now, travelled)
-        silent = found.silent | (self.tells - found.facts.keys()) if is_silent(health, now, settings) else found.silent
-        why = "; ".join(part for part in (degraded(health, now, settings), found.degraded) if part)
-        return found if silent == found.silent and why == found.degraded else replace(found, silent=silent, degraded=why)
+    def snapshot(self, health: Health, settings: LoopSettings, now: float, attention: Attention) -> Snapshot:
+        """The fusion's snapshot, with why the loop calls perception degraded."""
+        found = self.fusion.snapshot(now, attention.travelled, attention.relevant)
+        why = degraded(health, now, settings)
+        return replace(found, degraded="; ".join(part for part in (why, found.degraded) if part)) if why else found
 
 
 class PerceptionLoop:
@@ -60,18 +65,18 @@ class PerceptionLoop:
 
     def __init__(
         self, describer: Describer, prompts: AsksPrompts, belief: Belief, clock: Callable[[], float] | None = None,
-        settings: LoopSettings | None = None, initial: str = "lane_following.go_straight",
+        settings: LoopSettings | None = None, initial: str = "lane_following.go_straight", locate: Locate | None = None,
     ) -> None:  # fmt: skip
         began = time.monotonic()
         self._describer, self._belief = describer, belief
         self._clock = clock or (lambda: time.monotonic() - began)
         self._settings = settings or LoopSettings()
-        self._core = LoopCore(prompts, self._settings)
+        self._core = LoopCore(prompts, self._settings, locate)
         self._attention = Attention(initial)
         self._answers: deque[tuple[Reading, float, float]] = deque(maxlen=64)
         self._wake, self._stopping = threading.Event(), threading.Event()
         self._thread: threading.Thread | None = None
-        self.latest = Snapshot(0.0, silent=belief.tells, degraded="no frame has been answered yet")
+        self.latest = belief.snapshot(self._core.health, self._settings, self._clock(), self._attention)
         self.last_answer: tuple[Call, Description] | None = None
 
     @property
@@ -92,9 +97,10 @@ class PerceptionLoop:
         self._thread.start()
         return self
 
-    def attend(self, state: str, missing: tuple[str, ...] = (), travelled: float = 0.0) -> None:
-        """Say what the planner is at: the state whose prompt is asked, facts that would settle a verdict, metres travelled so far."""
-        self._attention = Attention(state, missing, travelled)
+    def attend(self, state: str, missing: tuple[str, ...] = (), travelled: float = 0.0, relevant: frozenset[str] | None = None) -> None:
+        """Say what the planner is at: the state whose prompt is asked, facts that would settle a verdict, metres travelled so far, and the
+        facts that map and state make matter here."""
+        self._attention = Attention(state, missing, travelled, relevant)
 
     def offer(self, frame: Frame) -> None:
         """A new frame; it replaces one not asked about yet."""
@@ -103,11 +109,12 @@ class PerceptionLoop:
 
     def snapshot(self) -> Snapshot:
         """What holds now: takes in what was answered since the last call, and lets the rest age. For the planner's thread alone."""
-        now, travelled = self._clock(), self._attention.travelled
+        now = self._clock()
         while self._answers:
             reading, where, when = self._answers.popleft()
             self._belief.fusion.update(reading, where, when)
-        self.latest = self._belief.snapshot(self._core.health, self._settings, now, travelled)
+        self.latest = self._belief.snapshot(self._core.health, self._settings, now, self._attention)
+        self._core.questions = self.latest.questions
         return self.latest
 
     def stop(self, seconds: float = 5.0) -> bool:
@@ -154,7 +161,7 @@ class PerceptionLoop:
         reading = Reading("")
         if not description.failure:
             try:
-                reading = self._belief.read(call, description)
+                reading = self._belief.read(call, description, self._describer.provenance)
             except Exception as error:  # noqa: BLE001  # an answer that breaks its reader is an answer that cannot be read
                 description = replace(description, text="", failure="malformed", detail=f"the answer cannot be read: {error}")
         now = self._clock()
@@ -170,12 +177,26 @@ class PerceptionLoop:
             return Description("", "malformed", f"{type(error).__name__}: {error}")
 
 
+class Perceives(Protocol):
+    """A loop, in wall-clock time or in simulated time."""
+
+    @property
+    def provenance(self) -> Provenance: ...
+
+    def attend(self, state: str, missing: tuple[str, ...] = (), travelled: float = 0.0, relevant: frozenset[str] | None = None) -> None: ...
+
+    def snapshot(self) -> Snapshot: ...
+
+
 @dataclass
 class LoopEye:
-    """A loop as the eye of a world: what it believes now, for the planner. It follows the ego's way by the positions it is shown."""
+    """A loop as the eye of a world: what it believes now, for the planner. It follows the ego's way by the positions it is shown.
 
-    loop: PerceptionLoop
-    state: Callable[[], tuple[str, tuple[str, ...]]]
+    `attention`: what the planner is at, asked at every look; its `travelled` is worked out here. `tells`: the facts handed on; None is all.
+    """
+
+    loop: Perceives
+    attention: Callable[[], Attention]
     tells: frozenset[str] | None = None
     _travelled: float = 0.0
     _at: tuple[float, float] | None = field(default=None, repr=False)
@@ -190,8 +211,8 @@ class LoopEye:
         if self._at is not None:
             self._travelled += ((ego.x - self._at[0]) ** 2 + (ego.y - self._at[1]) ** 2) ** 0.5
         self._at = ego.x, ego.y
-        state, missing = self.state()
-        self.loop.attend(state, missing, self._travelled)
+        now = self.attention()
+        self.loop.attend(now.state, now.missing, self._travelled, now.relevant)
         found = self.loop.snapshot()
         if self.tells is None:
             return found.facts, found.silent

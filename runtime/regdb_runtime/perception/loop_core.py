@@ -3,10 +3,15 @@
 from __future__ import annotations
 
 from collections import deque
+from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 from typing import Any, Protocol
 
-from regdb_runtime.perception.describer import Description, Frame, Prompt
+from regdb_runtime.perception.describer import Box, Description, Frame, Prompt
+from regdb_runtime.perception.evidence import Question
+
+Locate = Callable[[Frame, str], Box | None]
+"""Where in a frame a fact was seen; a detector knows, a language model does not."""
 
 
 class AsksPrompts(Protocol):
@@ -21,9 +26,9 @@ class LoopSettings:
 
     `deadline`: wall-clock bound of one call; the slowest model of the paper's Table IV (13B, 8-bit, below 0.5 Hz) needs more than the default.
     `period`: least time between starts of calls; 0 asks again as soon as an answer is there. `oldest_frame`: a frame older than this is not
-    worth asking about. `first_backoff` doubles with each failure in a row up to `longest_backoff`. `silent_after`: so long after the capture
-    of the last frame that was answered, perception reports nothing at present, and nothing may be assumed of what it would report.
-    `turns`: how many answered questions are kept for prompts that carry earlier ones.
+    worth asking about. `first_backoff` doubles with each failure in a row up to `longest_backoff`. `late_after`: age of the newest frame
+    answered from which perception is called degraded. `turns`: how many answered questions are kept for prompts that carry earlier ones.
+    `choice_tokens`: how long the answer to a closed question may become; every other call at most is one, so that the scene stays watched.
     """
 
     deadline: float = 2.0
@@ -31,27 +36,32 @@ class LoopSettings:
     oldest_frame: float = 0.5
     first_backoff: float = 0.5
     longest_backoff: float = 8.0
-    silent_after: float = 3.0
+    late_after: float = 3.0
     turns: int = 8
+    choice_tokens: int = 16
 
 
 @dataclass(frozen=True, slots=True)
 class Attention:
-    """What the planner is at: state id, facts that would settle an unknown verdict, metres travelled since the run began."""
+    """What the planner is at: state id, facts that would settle an unknown verdict, metres travelled since the run began, and the facts that
+    map and state make matter here (None: all)."""
 
     state: str
     missing: tuple[str, ...] = ()
     travelled: float = 0.0
+    relevant: frozenset[str] | None = None
 
 
 @dataclass(frozen=True, slots=True)
 class Call:
-    """One question to the model: when it began, about which frame, and where the vehicle was when that was taken."""
+    """One question to the model: when it began, about which frame, and where the vehicle was when that was taken. `question`: the closed one
+    that it puts, if it does."""
 
     frame: Frame
     prompt: Prompt
     travelled: float
     started: float
+    question: Question | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -71,13 +81,19 @@ class Health:
 
 @dataclass
 class LoopCore:
-    """Feed it `offer` and `finished`; ask it `next_call`. For one thread, save that `offer` may be called from another."""
+    """Feed it `offer` and `finished`; ask it `next_call`. For one thread, save that `offer` may be called, and `questions` set, from another.
+
+    `questions`: the closed ones that are open; `locate` says on which crop to put them, without it they are put on the whole frame.
+    """
 
     prompts: AsksPrompts
     settings: LoopSettings = field(default_factory=LoopSettings)
+    locate: Locate | None = None
+    questions: tuple[Question, ...] = ()
 
     def __post_init__(self) -> None:
         self.health = Health()
+        self._chose = False
         self._offered: deque[tuple[Frame, Attention]] = deque(maxlen=1)
         self._in_flight: Call | None = None
         self._history: deque[tuple[str, str]] = deque(maxlen=max(self.settings.turns, 1))
@@ -107,10 +123,20 @@ class LoopCore:
         self._change(asking=prompt is not None)
         if prompt is None:
             return None
-        self._in_flight = Call(frame, prompt, attention.travelled, now)
+        question = self._choice()
+        if question is not None:
+            crop = self.locate(frame, question.fact) if self.locate is not None else None
+            prompt = Prompt(question.text, name=f"choice:{question.fact}", max_tokens=self.settings.choice_tokens, crop=crop)
+        self._in_flight = Call(frame, prompt, attention.travelled, now, question)
         self._next_start = now + self.settings.period
         self._change(calls=self.health.calls + 1)
         return self._in_flight
+
+    def _choice(self) -> Question | None:
+        """A closed question, unless the call before was one."""
+        open_ones = self.questions
+        self._chose = bool(open_ones) and not self._chose
+        return open_ones[0] if self._chose else None
 
     @property
     def waits_until(self) -> float:
@@ -126,7 +152,8 @@ class LoopCore:
         if description.failure:
             self._failed(f"{description.failure}: {description.detail}" if description.detail else description.failure, now)
         else:
-            self._history.append((call.prompt.text, description.text))
+            if call.question is None:
+                self._history.append((call.prompt.text, description.text))
             self._change(failures=0, reason="", waits_until=0.0, answered=call.frame.captured, answers=self.health.answers + 1)
         return call
 
@@ -154,9 +181,4 @@ def degraded(health: Health, now: float, settings: LoopSettings) -> str:
     if health.answered is None:
         return "no frame has been answered yet"
     age = now - health.answered
-    return f"the newest frame answered is {age:.1f} s old" if age > settings.silent_after else ""
-
-
-def is_silent(health: Health, now: float, settings: LoopSettings) -> bool:
-    """Whether perception reports nothing at present."""
-    return health.answered is None or now - health.answered > settings.silent_after
+    return f"the newest frame answered is {age:.1f} s old" if age > settings.late_after else ""

@@ -10,8 +10,8 @@ from regdb.states import StateMachine
 from regdb.vocabulary import Fact, Vocabulary
 from regdb_runtime.errors import RequestError
 from regdb_runtime.legality import View
-from regdb_runtime.perception.answer_schema import AnswerLimits, answer_schema, can_be_asked, closed_choice, names_of
-from regdb_runtime.perception.describer import Box, Prompt
+from regdb_runtime.perception.answer_schema import AnswerLimits, answer_schema, can_be_asked, names_of
+from regdb_runtime.perception.describer import Prompt
 
 Turns = tuple[tuple[str, str], ...]
 """(question, answer) of earlier ticks, oldest first."""
@@ -91,15 +91,6 @@ class PromptMaker:
         if found is None:
             found = self._ranked[state_id] = self._rank(state_id, self._rules)
         return found
-
-    def choice(self, fact: str, crop: Box | None = None) -> Prompt:
-        """One closed question on a crop: which of a fact and its declared confusables is it, or none of them. Raises FactError."""
-        asked = self._vocabulary.fact(fact)
-        names = dict.fromkeys(name.partition("=")[0] for name in asked.confusables)
-        others = [self._vocabulary.facts[name] for name in names if name in self._asks and name != fact]
-        lines = [_line(item) for item in (asked, *others)]
-        text = "Which one of these does the picture show?\n" + "\n".join(lines) + '\nAnswer in JSON: {"seen": [one name]}, or {"seen": ["none"]}.'
-        return Prompt(text, closed_choice(asked, others), (), f"choice:{fact}", self.settings.paper_tokens, crop)
 
     def _rank(self, state_id: str, rules: tuple[Regulation, ...]) -> tuple[str, ...]:
         """Each rule gives every asked fact that it reads an equal part of one; a fact for which nothing may be assumed counts double; what is
