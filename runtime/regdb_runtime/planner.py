@@ -88,6 +88,14 @@ class Planner:
             raise RuntimeError("judge before step: there is no state in force yet")
         return self._mind.judge(observation, self._memory, plan)
 
+    def warm(self, observation: Observation) -> None:
+        """Make everything ready that the first ticks would otherwise wait for: paths, the law's decisions. Takes some
+        seconds; call it before the vehicle moves. Raises RegdbRuntimeError for what does not fit together, where `step` would brake and say so."""
+        mind = self._awake()
+        mind.warm(observation.clock)
+        picture = mind.strategist.picture(observation, Memory(mind.initial), None)
+        mind.strategist.maneuvers(picture)
+
     def _drive(self, observation: Observation, report: EmergencyReport) -> Decision:
         mind = self._awake()
         if not self._memory.state:

@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 import pytest
 from regdb_runtime.drive.decision_text import decision_text
+from regdb_runtime.errors import RequestError
 from regdb_runtime.geometry import boxes, distance
 from regdb_runtime.maps.road_map import RoadMap
 from regdb_runtime.maps.route import Route
@@ -233,6 +234,16 @@ def test_strategy_runs_at_two_hertz_and_motion_at_every_tick(road):
     strategic = [seen.time for seen, decision in found.ticks if decision.strategic]
     assert np.diff(strategic).max() <= 0.6 + 1e-9
     assert all(len(decision.candidates) == 1 for _, decision in found.ticks if not decision.strategic)
+
+
+def test_warming_compiles_every_transition_and_changes_no_decision(signals):
+    begin = seen(ego(-60.0, 10.0), light="red", road_map=signals)
+    warm, cold = (Planner(law(), signals, route(signals, "right"), FOOTPRINT) for _ in range(2))
+    warm.warm(begin)
+    one, other = warm.step(begin), cold.step(begin)
+    assert (one.state, one.margin, one.trajectory.speed.tobytes()) == (other.state, other.margin, other.trajectory.speed.tobytes())
+    with pytest.raises(RequestError, match="unknown"):
+        Planner(law(), replace(signals, jurisdiction="atlantis"), route(signals, "right"), FOOTPRINT).warm(begin)
 
 
 def test_a_candidate_that_raises_falls_out_alone(road, monkeypatch):

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import datetime
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
@@ -22,7 +23,7 @@ from regdb_runtime.strategy.evaluation import Evaluated, Evaluator, failed
 from regdb_runtime.strategy.events import ZoneWatch, state_events, zone_events
 from regdb_runtime.strategy.lane_prediction import AlongLanes
 from regdb_runtime.strategy.machine import Machine
-from regdb_runtime.strategy.maneuvers import Strategist
+from regdb_runtime.strategy.maneuvers import BUILDERS, Strategist
 from regdb_runtime.strategy.memory import Memory
 from regdb_runtime.strategy.paths import paths_of
 from regdb_runtime.strategy.picture import Picture
@@ -71,6 +72,20 @@ class Mind:
     def initial(self) -> str:
         """The state driving starts in."""
         return self.strategist.machine.initial
+
+    def warm(self, clock: datetime.datetime) -> int:
+        """Compile the law of every place of the map for every transition there is, so that no tick has to; how many there were.
+
+        Raises RequestError for a place that the database does not know.
+        """
+        road_map, machine = self.strategist.road_map, self.strategist.machine
+        places = sorted({place for place in (road_map.jurisdiction, *(zone.jurisdiction for zone in road_map.zones)) if place is not None})
+        steps = sorted({(step.current, step.next) for state in BUILDERS for step in machine.successors(state)})
+        for place in places:
+            view = self.evaluator.scenes.view(place, clock)
+            for current, following in steps:
+                view.concerned(current, following)
+        return len(places) * len(steps)
 
     def think(self, observation: Observation, memory: Memory, start: EgoState, strategic: bool) -> Thought:
         """One tick: among all states that may follow, or in the state in force alone; if that has no lawful plan, among all after all."""
