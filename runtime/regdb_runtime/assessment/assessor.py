@@ -14,7 +14,7 @@ from regdb_runtime.assessment.assessed import LAWFUL, NO_PLAN, RANKS, UNCERTAIN,
 from regdb_runtime.assessment.caps import Caps
 from regdb_runtime.assessment.cross_section import Roads
 from regdb_runtime.assessment.judge import Judged, Judging
-from regdb_runtime.assessment.plan_facts import Measuring, measure, measuring
+from regdb_runtime.assessment.plan_facts import BESIDE, Measuring, measure, measuring
 from regdb_runtime.assessment.rejections import Fallen
 from regdb_runtime.assessment.route_facts import shared_facts
 from regdb_runtime.assessment.settings import AssessmentSettings
@@ -86,11 +86,11 @@ class Assessor:
 
     def _measuring(self, maneuver: Maneuver, stretches: Sequence[Stretch], candidates: Candidates, predictions: Predictions) -> Measuring:
         sections = self._roads.sections(maneuver.lane_path) if self._roads is not None else None
-        front = float(candidates.station[0, 0]) + self.footprint.front
-        reach = float(candidates.station[:, -1].max()) - float(candidates.station[0, 0]) + self.footprint.length
+        ego = float(candidates.x[0, 0]), float(candidates.y[0, 0])
+        reach = float(candidates.station[:, -1].max()) - float(candidates.station[0, 0]) + self.footprint.length + BESIDE
         shared = shared_facts(maneuver, self._roads)
         return measuring(
-            maneuver, stretches, self.footprint, self.settings, self.interpretation, sections, shared, predictions, front, reach
+            maneuver, stretches, self.footprint, self.settings, self.interpretation, sections, shared, predictions, ego, reach
         )  # fmt: skip
 
     def _distinguish(self, stretch: Stretch, maneuver: Maneuver) -> Distinctions:

@@ -26,11 +26,13 @@ from regdb_runtime.assessment.passing import Passing
 from regdb_runtime.assessment.settings import AssessmentSettings
 from regdb_runtime.assessment.stopping import stop_places
 from regdb_runtime.maneuver import Maneuver
-from regdb_runtime.maps.reference_path import ReferencePath
 from regdb_runtime.observation import Footprint
 from regdb_runtime.planning.prediction import Predictions
 from regdb_runtime.scenes.stretch import Stretch
 from regdb_runtime.trajectory import Candidates, Floats
+
+BESIDE = 15.0
+"""Metres beside the path within which somebody may be overtaken: four lanes."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -53,16 +55,16 @@ class Measuring:
 
 def measuring(
     maneuver: Maneuver, stretches: Sequence[Stretch], footprint: Footprint, settings: AssessmentSettings, profile: Interpretation | None,
-    sections: CrossSections | None, shared: Mapping[str, Value], predictions: Predictions, front: float, reach: float,
+    sections: CrossSections | None, shared: Mapping[str, Value], predictions: Predictions, ego: tuple[float, float], reach: float,
 ) -> Measuring:  # fmt: skip
-    """Place the road users that matter on the path: those within `reach` metres ahead of `front`, and those the manoeuvre names."""
+    """Place the road users that matter on the path: those within `reach` metres of the vehicle, and those the manoeuvre names."""
     path = maneuver.lane_path.path
     lead_id = maneuver.lead or (maneuver.goal.follow.track if maneuver.goal.follow is not None else None)
     named = {maneuver.passes, lead_id} - {None}
-    rows = _rows_near(path, predictions, named, front, reach)
+    rows = _rows_near(predictions, named, ego, reach)
     placed = others.others(path, predictions, rows)
     by_id = {other.id: other for other in placed}
-    near = tuple(other for other in placed if other.id != maneuver.passes and other.kind in passing.KIND_PASSED)
+    near = tuple(other for other in placed if other.id != maneuver.passes and other.kind in passing.KIND_PASSED and abs(other.middle[0]) < BESIDE)
     passed = by_id.get(maneuver.passes) if maneuver.passes is not None else None
     lead = by_id.get(lead_id) if lead_id is not None else passed
     asked = _least_clearance(maneuver, stretches) if settings.claims_no_room else 0.0
@@ -70,11 +72,10 @@ def measuring(
     return Measuring(maneuver, stretches, footprint, settings, profile, sections, shared, what, lead)
 
 
-def _rows_near(path: ReferencePath, predictions: Predictions, named: set[str | None], front: float, reach: float) -> list[int]:
+def _rows_near(predictions: Predictions, named: set[str | None], ego: tuple[float, float], reach: float) -> list[int]:
     if not len(predictions.ids):
         return []
-    station, offset = path.project(np.column_stack([predictions.x[:, 0], predictions.y[:, 0]]), extend=True)
-    around = (station > front - 15.0) & (station < front + reach) & (np.abs(offset) < 15.0)
+    around = np.hypot(predictions.x[:, 0] - ego[0], predictions.y[:, 0] - ego[1]) < reach
     return [row for row, name in enumerate(predictions.ids) if around[row] or name in named]
 
 

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import math
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -142,7 +143,7 @@ class ReferencePath:
     def _nearest(self, stations: Floats) -> tuple[NDArray[np.intp], Floats]:
         """Index of the table's nearest entry, and the way on from there."""
         place = (stations - self.tabulated.first) / self.tabulated.step
-        index = np.clip(np.rint(place), 0, len(self.tabulated.x) - 1).astype(np.intp)
+        index = _within(np.rint(place), 0, len(self.tabulated.x) - 1).astype(np.intp)
         return index, (place - index) * self.tabulated.step
 
     def _checked(self, stations: Floats) -> Floats:
@@ -182,10 +183,10 @@ class ReferencePath:
         for _ in range(2):
             along, across, bend = self._seen_from(px, py, index)
             move = along / np.maximum(1.0 - bend * across, 0.2)
-            index = np.clip(index + np.rint(np.clip(move, -COARSE, COARSE) / table.step).astype(np.intp), 0, last)
+            index = _within(index + np.rint(_within(move, -COARSE, COARSE) / table.step).astype(np.intp), 0, last)
         along, across, bend = self._seen_from(px, py, index)
         rate = table.curvature_rate.take(index)
-        move = np.clip(along / np.maximum(1.0 - bend * across, 0.2), -COARSE, COARSE)
+        move = _within(along / np.maximum(1.0 - bend * across, 0.2), -COARSE, COARSE)
         for _ in range(2):
             ahead, aside = _developed(bend, rate, move)
             turn = move * (bend + rate * move / 2)
@@ -207,6 +208,11 @@ class ReferencePath:
         dx, dy = px - table.x.take(index), py - table.y.take(index)
         cos, sin = table.cos.take(index), table.sin.take(index)
         return dx * cos + dy * sin, dy * cos - dx * sin, table.curvature.take(index)
+
+
+def _within(values: Any, low: float, high: float) -> Any:
+    """As np.clip, which takes thrice the time on the few points of a tick."""
+    return np.minimum(np.maximum(values, low), high)
 
 
 def _developed(bend: Floats, rate: Floats, step: Floats) -> tuple[Floats, Floats]:
