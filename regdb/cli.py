@@ -44,7 +44,7 @@ COMMANDS: dict[str, Command] = {
     "explain": Command("regdb_runtime.commands.explain", "", "Say why a verdict is as it is, and what would turn it."),
     "drive": Command("regdb_runtime.commands.drive", "", "Drive the paper's experiment and its variants by the law in the database."),
     "doctor": Command("regdb.doctor", "", "Report what is installed, which codes are found, and what is missing."),
-    "demo": Command("regdb.demo", "compiler", "Lint, test, compile and decide the paper's situations on the codes."),
+    "demo": Command("regdb.demo", "compiler", "Lint, test, compile, decide the paper's situations and drive its experiment."),
 }
 
 

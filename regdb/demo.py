@@ -1,4 +1,4 @@
-"""`regdb demo`: lint, test and compile the codes, then decide the paper's situations from the database just written."""
+"""`regdb demo`: lint, test and compile the codes, then decide the paper's situations and drive its experiment by the database just written."""
 
 from __future__ import annotations
 
@@ -19,6 +19,9 @@ from regdb.situation import read_plan, read_scene
 
 SITUATIONS = "paper.yaml"
 """The file of cases that holds the paper's situations; every code may have one."""
+
+PLACE = "los_angeles"
+"""Where the paper's drive takes place."""
 
 
 @dataclass(frozen=True)
@@ -52,13 +55,16 @@ def command(
     tell(_wrapped(f"compile  {outputs.folder}: {', '.join(item.name for item in outputs.files)}", 3, 12))
     decided = list(_decide(build, outputs.folder / "regulations.sqlite"))
     wrong = [item for item in decided if not item.as_expected]
-    if format_ == "json":
-        typer.echo(json.dumps(_data(decided, outputs), indent=2, ensure_ascii=False))
-    else:
+    if format_ == "text":
         _show(decided, tell)
+    driven = _drive(outputs.folder, tell)
+    if format_ == "json":
+        typer.echo(json.dumps(_data(decided, outputs) | {"drive": driven}, indent=2, ensure_ascii=False))
+    else:
         tell(f"\n{len(decided)} situations decided by law {outputs.database.content_hash[:12]}, {time.perf_counter() - started:.1f} s in all")
         tell(f"ask your own:  regdb check --db {outputs.folder / 'regulations.sqlite'} --help")
-    raise typer.Exit(0 if passed and not wrong else 1)
+    arrived = driven is None or driven["as_expected"]
+    raise typer.Exit(0 if passed and not wrong and arrived else 1)
 
 
 def _silent(_: str) -> None:
@@ -107,6 +113,21 @@ def _show(decided: list[Situation], tell: Callable[[str], None]) -> None:
             tell(f"\n   {group}")
         tell(f"   {item.verdict.verdict.upper():<8} {item.name}" + ("" if item.as_expected else "   <- not what its case expects"))
         tell(_wrapped(_because(item.verdict), 12, 12))
+
+
+def _drive(folder: Path, tell: Callable[[str], None]) -> dict[str, Any] | None:
+    """The paper's drive by the database just written; None where its codes do not know the place."""
+    database = vehicle_side("database").RegulationDatabase.open(folder / "regulations.sqlite")
+    tell("\n3. The paper's drive\n")
+    if PLACE not in {item.id for item in database.tree}:
+        tell(f"   these codes know no {PLACE}, where it takes place")
+        return None
+    row, files = vehicle_side("drive.outputs").drive_variant("paper", database, folder / "drive" / "paper")
+    summary = vehicle_side("drive.summary")
+    tell(textwrap.indent(summary.block(row), "   "))
+    tell(_wrapped(f"files    {folder / 'drive' / 'paper'}: {', '.join(file.name for file in files)}", 3, 12))
+    tell("   variants: regdb drive list")
+    return dict(summary.row_data(row))
 
 
 def _wrapped(text: str, indent: int, hanging: int) -> str:

@@ -41,6 +41,15 @@ def test_the_sign_not_seen_is_unknown_and_named(decided: dict[str, object]) -> N
     assert [entry["fact"] for entry in missing] == ["sign.no_turn_on_red"]
 
 
+def test_the_paper_is_driven_by_the_database_just_written(decided: dict[str, object]) -> None:
+    drive = decided["drive"]
+    assert isinstance(drive, dict)
+    assert drive["as_expected"] is True
+    assert [event["name"] for event in drive["events"]] == [
+        "overtaking_begins", "back_in_lane", "stopped", "released", "zone_detected", "reduced_speed",
+    ]  # fmt: skip
+
+
 def test_text_fits_80_columns(codes: Path, tmp_path: Path) -> None:
     command = [sys.executable, "-m", "regdb", "demo", "--codes", str(codes), "-o", str(tmp_path / "o")]
     lines = subprocess.run(command, capture_output=True, text=True, check=True, cwd=tmp_path).stdout.splitlines()

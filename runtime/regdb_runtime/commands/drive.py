@@ -1,4 +1,4 @@
-"""`regdb drive`: the paper's drive and its variants, replays of a scene or a log; each writes a log, figures, pictures and a table.
+"""`regdb drive`: the paper's drive and its variants, replays, recorded streets observed or driven; each writes what it found with pictures of it.
 
 What to do is the first word; each has a function of its own in WAYS, so a new way is an entry there.
 """
@@ -12,13 +12,14 @@ import sys
 import textwrap
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from pathlib import Path
 from typing import Annotated
 
 import typer
 
 from regdb.front import ADDED_CODES, FrontError, database, told
+from regdb_runtime.commands.drive_options import Options
 from regdb_runtime.database import RegulationDatabase
 from regdb_runtime.drive.log import Log, read_log
 from regdb_runtime.drive.outputs import draw_drive, write_drive
@@ -32,25 +33,9 @@ from regdb_runtime.worlds.scene_spec import SceneSpec
 EYES = ("scripted", "recorded", "none")
 
 
-@dataclass(frozen=True)
-class Options:
-    """The options of the command line, as typed."""
-
-    out: Path | None
-    variants: tuple[str, ...]
-    world: str
-    eye: str
-    record: Path | None
-    profile: str
-    seed: int | None
-    db: Path | None
-    figures: bool
-    form: str
-
-
 def command(
-    what: Annotated[str, typer.Argument(help="paper, list, or replay.")],
-    file: Annotated[Path | None, typer.Argument(help="replay: a scene (JSON) or a log (JSONL).")] = None,
+    what: Annotated[str, typer.Argument(help="paper, list, replay, observe, or recorded.")],
+    file: Annotated[Path | None, typer.Argument(help="replay: a scene (JSON) or a log (JSONL). observe, recorded: CommonRoad traffic (XML).")] = None,
     out: Annotated[Path | None, typer.Option("-o", "--out", help="Where logs, figures and the table go; default: out/drive.")] = None,
     names: Annotated[list[str] | None, typer.Option("--variant", help="A variant's name, or all; repeatable.")] = None,
     world: Annotated[str, typer.Option(help="built-in or sumo.")] = "built-in",
@@ -60,9 +45,15 @@ def command(
     seed: Annotated[int | None, typer.Option(help="Seed of the other traffic.")] = None,
     db: Annotated[Path | None, typer.Option("--db", help="Compiled database; default: compiled from the codes.")] = None,
     figures: Annotated[bool, typer.Option(help="Draw the figures and pictures.")] = True,
+    vehicles: Annotated[list[str] | None, typer.Option("--vehicle", help="observe: a recorded vehicle; repeatable; default: all.")] = None,
+    place: Annotated[str, typer.Option("--in", help="observe, recorded: jurisdiction; default: the model code.")] = "",
+    on: Annotated[str, typer.Option("--on", help="observe, recorded: day, or day and time; default: today at noon.")] = "",
+    route: Annotated[str, typer.Option(help="recorded: lanes from start to end, with commas.")] = "",
+    lights: Annotated[str, typer.Option(help="recorded: what lights show, red or green first, nominal or none.")] = "red",
+    interpretation: Annotated[str, typer.Option(help="observe: profile for what the law leaves to judgement.")] = "",
     format_: Annotated[str, typer.Option("--format", help="text or json.")] = "text",
 ) -> None:
-    """Drive the paper's experiment by the law in the database."""
+    """Drive the paper's experiment by the law in the database, or observe recorded traffic."""
     way = WAYS.get(what)
     if way is None:
         near = difflib.get_close_matches(what, WAYS, 1)
@@ -71,7 +62,10 @@ def command(
         raise FrontError("--format is text or json")
     if eye and eye not in EYES:
         raise FrontError(f"--eye is {', '.join(EYES[:-1])} or {EYES[-1]}")
-    options = Options(out, tuple(names or ("paper",)), world, eye, record, profile, seed, db, figures, format_)
+    options = Options(
+        out, tuple(names or ("paper",)), world, eye, record, profile, seed, db, figures, format_, tuple(vehicles or ()), place, on, route, lights,
+        interpretation,
+    )
     try:
         code = way(file, options)
     except RegdbRuntimeError as error:
@@ -93,12 +87,13 @@ def _drive_variant(item: Variant, options: Options) -> Row:
     law = _open(options.db, item.codes)
     scene = item.scene if options.seed is None else replace(item.scene, seed=options.seed)
     spec = scene_spec(scene, item.name)
-    folder = _folder(options) / item.name
+    folder = options.folder / item.name
     if options.eye:
         spec = with_eye(spec, options.eye, _record_for(item.name, spec, law, folder, options))  # type: ignore[arg-type]  # checked by `command`
     log = _driven(item.name, spec, law, Choices(options.world, options.profile))
     _write(log, spec, law, folder, options)
-    return row_of(log, item if spec.eye.kind == item.scene.eye else None)
+    blinded = spec.eye.kind == "none" != item.scene.eye
+    return row_of(log, None if blinded else item)
 
 
 def _record_for(name: str, spec: SceneSpec, law: RegulationDatabase, folder: Path, options: Options) -> str:
@@ -141,7 +136,7 @@ def _replay(file: Path | None, options: Options) -> int:
         raise FrontError(f"{file}:{error.lineno}:{error.colno}: this is no JSON: {error.msg}") from None
     law = _open(options.db, "")
     log = _driven(spec.name, spec, law, Choices(options.world, options.profile))
-    _write(log, spec, law, _folder(options) / spec.name, options)
+    _write(log, spec, law, options.folder / spec.name, options)
     return _show([row_of(log, None)], options)
 
 
@@ -155,7 +150,8 @@ def _replay_log(before: Log, file: Path, options: Options) -> int:
         _write(log, spec, law, options.out / name, options)
     difference = first_difference(before, log)
     if law.hash != before.run["database"]:
-        difference = f"{difference or 'the same ticks'}; it was driven by law {before.run['database'][:12]}, now by {law.hash[:12]}"
+        change = f"it was driven by law {before.run['database'][:12]}, now by {law.hash[:12]}"
+        difference = f"{difference or 'the same drive'}; {change}"
     if options.form == "json":
         typer.echo(json.dumps({"schema": "regdb-drive-replay/1", "file": str(file), "same": not difference, "difference": difference}, indent=2))
     else:
@@ -163,7 +159,23 @@ def _replay_log(before: Log, file: Path, options: Options) -> int:
     return 1 if difference else 0
 
 
-WAYS: Mapping[str, Callable[[Path | None, Options], int]] = {"paper": _paper, "list": _list, "replay": _replay}
+def _observe(file: Path | None, options: Options) -> int:
+    """Judge recorded traffic."""
+    from regdb_runtime.commands.drive_recorded import observe_file
+
+    return observe_file(file, options)
+
+
+def _recorded(file: Path | None, options: Options) -> int:
+    """Drive among recorded traffic."""
+    from regdb_runtime.commands.drive_recorded import drive_file
+
+    return drive_file(file, options)
+
+
+WAYS: Mapping[str, Callable[[Path | None, Options], int]] = {
+    "paper": _paper, "list": _list, "replay": _replay, "observe": _observe, "recorded": _recorded,
+}  # fmt: skip
 """First word -> what it does; returns the exit code."""
 
 
@@ -221,13 +233,9 @@ def _added(folder: Path | None) -> Iterator[None]:
                 os.environ[ADDED_CODES] = before
 
 
-def _folder(options: Options) -> Path:
-    return options.out if options.out is not None else Path("out") / "drive"
-
-
 def _show(rows: Sequence[Row], options: Options) -> int:
     """The table on stdout and beside the drives; 1 when a drive is not as expected."""
-    folder = _folder(options)
+    folder = options.folder
     write_text(folder / "summary.md", markdown(rows))
     if options.form == "json":
         typer.echo(json.dumps({"schema": "regdb-drive-summary/1", "folder": str(folder), "drives": [row_data(row) for row in rows]}, indent=2))

@@ -17,11 +17,11 @@ _TOLERANCE = 0.01
 
 def shortfalls(expects: Expectation, found: Measures) -> tuple[str, ...]:
     """Everything in which a drive is not as expected, a sentence each; empty when it is."""
-    return (*_owed(found), *_wanted(expects, found))
+    return (*_owed(expects, found), *_wanted(expects, found))
 
 
-def _owed(found: Measures) -> Iterator[str]:
-    if found.ended != "destination":
+def _owed(expects: Expectation, found: Measures) -> Iterator[str]:
+    if found.ended != expects.ends:
         yield f"ended by {found.ended}: {found.reason}"
     if found.excess is not None and found.excess > _TOLERANCE:
         yield f"{found.excess:.2f} m/s over the limit in force"

@@ -2,12 +2,19 @@
 
 from __future__ import annotations
 
+from contextlib import suppress
 from pathlib import Path
 
 from regdb.vocabulary import Vocabulary
+from regdb_runtime.database import RegulationDatabase
 from regdb_runtime.drive.figures import Scenes, draw_all
 from regdb_runtime.drive.log import Log, writing
+from regdb_runtime.drive.paper_scene import scene_spec
+from regdb_runtime.drive.prepare import Choices, drive_scene
 from regdb_runtime.drive.scene_pictures import draw_events, instants
+from regdb_runtime.drive.summary import Row, row_of
+from regdb_runtime.drive.variants import variant
+from regdb_runtime.errors import MissingExtra
 from regdb_runtime.worlds.road_builder import build_road_map
 from regdb_runtime.worlds.scene_spec import SceneSpec
 
@@ -20,6 +27,17 @@ def write_drive(log: Log, spec: SceneSpec, folder: Path) -> tuple[Path, ...]:
             out.write(record)
     files[1].write_text(spec.to_json(), "utf-8")
     return files
+
+
+def drive_variant(name: str, database: RegulationDatabase, folder: Path) -> tuple[Row, tuple[Path, ...]]:
+    """A variant driven in the built-in world, written and, where matplotlib is installed, drawn: its row of the table and the files."""
+    item = variant(name)
+    spec = scene_spec(item.scene, name)
+    log = drive_scene(name, spec, database, Choices())
+    files = write_drive(log, spec, folder)
+    with suppress(MissingExtra):
+        files += draw_drive(log, spec, database.vocabulary, folder)
+    return row_of(log, item), files
 
 
 def draw_drive(log: Log, spec: SceneSpec, vocabulary: Vocabulary, folder: Path) -> tuple[Path, ...]:

@@ -16,6 +16,7 @@ from regdb_runtime.drive.run import DriveSettings, drive
 from regdb_runtime.errors import RequestError
 from regdb_runtime.planner import Planner, PlannerSettings
 from regdb_runtime.planning.cost_settings import DEFAULT, PAPER, CostSettings
+from regdb_runtime.scenes.tellers import eye_facts
 from regdb_runtime.worlds.built_in.world import BuiltInWorld
 from regdb_runtime.worlds.plain_form import to_plain
 from regdb_runtime.worlds.scene_spec import SceneSpec
@@ -80,30 +81,34 @@ def with_eye(spec: SceneSpec, kind: Literal["scripted", "recorded", "none"], rec
 
 
 def eye_record(log: Log, vocabulary: Vocabulary) -> Iterator[str]:
-    """What the eye of a drive reported, as lines that a recorded eye reads; facts as people write them."""
-    next_look = 0.0
+    """What the eye of a drive reported, as lines that a recorded eye reads; facts as people write them.
+
+    Of a fact that the eye looks for and says nothing about, the record says what the vocabulary assumes then.
+    """
+    own, next_look = eye_facts(vocabulary), 0.0
+    assumed = {name: fact.assumption.value for name in sorted(own) if (fact := vocabulary.fact(name)).assumption is not None}
     for tick in log.ticks:
         if tick["time"] >= next_look - 1e-6:
-            facts = {name: vocabulary.fact(name).show(_as_set(value)) for name, value in tick["facts"].items()}
+            unheard = set(tick["silent"])
+            told = {name: value for name, value in assumed.items() if name not in unheard} | {
+                name: frozenset(value) if isinstance(value, list) else value for name, value in tick["facts"].items()
+            }
+            facts = {name: vocabulary.fact(name).show(value) for name, value in sorted(told.items())}
             yield json.dumps({"time": tick["time"], "facts": facts}, ensure_ascii=False, separators=(",", ":"))
             next_look = tick["time"] + LOOKS_EVERY
 
 
-def _as_set(value: Any) -> Any:
-    """A set comes out of JSON as a list."""
-    return frozenset(value) if isinstance(value, list) else value
-
-
 def first_difference(one: Log, other: Log) -> str:
-    """Where two logs part, in words; empty when they are the same."""
+    """Where two drives part, in words; empty when they are the same, whatever the law's hash."""
     for index, (a, b) in enumerate(zip(one.ticks, other.ticks, strict=False)):
         if a != b:
             keys = [key for key in a if a.get(key) != b.get(key)]
             return f"tick {index} at {a['time']:.1f} s differs in {', '.join(keys)}"
     if len(one.ticks) != len(other.ticks):
         return f"{len(one.ticks)} ticks and {len(other.ticks)}"
-    if one.run != other.run:
-        return f"the run differs in {', '.join(key for key in one.run if one.run.get(key) != other.run.get(key))}"
+    changed = [key for key in one.run if key != "database" and one.run[key] != other.run.get(key)]
+    if changed:
+        return f"the run differs in {', '.join(changed)}"
     return "" if one.end == other.end else "they end differently"
 
 

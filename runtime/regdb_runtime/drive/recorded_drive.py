@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+from collections.abc import Sequence
 from contextlib import closing
 from dataclasses import asdict
 from pathlib import Path
@@ -9,17 +11,25 @@ from typing import Any
 
 from regdb.vocabulary import Vocabulary
 from regdb_runtime.database import RegulationDatabase
+from regdb_runtime.drive.downtrack import Downtrack
 from regdb_runtime.drive.figures import Scenes, draw_all
 from regdb_runtime.drive.log import Log, writing
 from regdb_runtime.drive.prepare import PROFILES, Choices
 from regdb_runtime.drive.run import DriveSettings, drive
 from regdb_runtime.drive.scene_pictures import draw_events, instants
 from regdb_runtime.errors import RequestError
+from regdb_runtime.maps.commonroad import read_commonroad
+from regdb_runtime.maps.route import route_through
+from regdb_runtime.observation import Footprint
 from regdb_runtime.planner import Planner, PlannerSettings
 from regdb_runtime.worlds.plain_form import to_plain
 from regdb_runtime.worlds.recorded import RecordedWorld
 from regdb_runtime.worlds.recorded_spec import RecordedSpec
 
+GENTLE, DECIDES = 2.0, 8.0
+"""m/s2 at which a drive that begins before a stop line could brake for it, and metres left for deciding so."""
+UNPOSTED = 11.2
+"""m/s (25 mph) at which it begins where no limit is posted."""
 LOOP = DriveSettings(arrived_within=8.0)
 """Recorded maps end soon after the junction, so the destination is the route's end itself."""
 
@@ -43,6 +53,21 @@ def drive_recorded(spec: RecordedSpec, database: RegulationDatabase, choices: Ch
                           "recording leaves the scene"},
         }  # fmt: skip
         return drive(world, planner, about, choices.settings, told)
+
+
+def recorded_spec(name: str, file: Path, lanes: Sequence[str], station: float = 5.0, **choices: Any) -> RecordedSpec:
+    """A drive along lanes of a recorded street, those between them found. It begins at the limit posted there, or slower where a line is near:
+    so that braking at GENTLE still reaches it. Raises MapError and NoRoute."""
+    road_map = read_commonroad(file)
+    route = route_through(road_map, tuple(lanes)).lanes
+    downtrack = Downtrack(road_map, route)
+    lines = [station_of for name in route[:-1] if (station_of := downtrack.stop_line(name)) is not None and station_of > station]
+    speeds = [road_map.lanes[route[0]].speed_limit or UNPOSTED]
+    footprint = choices.get("footprint", Footprint())
+    if lines:
+        room = max(lines[0] - station - footprint.front - DECIDES, 0.0)
+        speeds.append(math.sqrt(2 * GENTLE * room))
+    return RecordedSpec(name, str(file), route, station, round(min(speeds), 2), **choices)
 
 
 def lights_said(spec: RecordedSpec) -> str:

@@ -14,6 +14,10 @@ from regdb_runtime.drive.measures import Measures, measure
 from regdb_runtime.drive.variants import Variant
 
 WIDTH = 80
+REASON = 120
+"""Characters of a reason that the table shows."""
+ROUNDING = 0.01
+"""m/s over a limit that are rounding, not driving."""
 _EVENT_WORDS = {
     "overtaking_begins": "overtakes", "back_in_lane": "is back in lane", "overtaking_given_up": "gives up overtaking", "stopped": "stops",
     "released": "goes on", "zone_detected": "brakes for the zone", "reduced_speed": "reaches its limit",
@@ -41,8 +45,13 @@ def row_of(log: Log, variant: Variant | None) -> Row:
 def story(found: Measures) -> str:
     """What happened, in a line: each event with its time and its number, and the end."""
     parts = [_told(event.name, event.time, found) for event in found.events]
-    parts.append("arrives" if found.ended == "destination" else f"ends by {found.ended} ({found.reason})")
+    parts.append("arrives" if found.ended == "destination" else f"ends by {found.ended} ({shorten(found.reason, REASON)})")
     return ", ".join([*parts[:-1], f"{parts[-1]} at {found.time:.1f} s"])
+
+
+def shorten(text: str, most: int) -> str:
+    """The beginning of a long list of reasons; the log has the whole."""
+    return textwrap.shorten(text, most, placeholder=" …")
 
 
 def _told(name: str, time: float, found: Measures) -> str:
@@ -63,7 +72,7 @@ def numbers(found: Measures) -> str:
         parts.append(f"clearance {found.clearance:.2f} m ({found.clearance / 0.3048:.1f} ft)")
     parts.append(f"top {mph(found.top_speed)}")
     if found.excess is not None:
-        parts.append(f"{abs(found.excess):.2f} m/s {'over' if found.excess > 0 else 'under'} the limit at the nearest")
+        parts.append(f"{found.excess:.2f} m/s over the limit" if found.excess > ROUNDING else "never over the limit")
     if found.zone_speed is not None:
         parts.append(f"{mph(found.zone_speed)} in the zone")
     if found.stop_gap is not None:
@@ -81,19 +90,25 @@ def table(rows: Sequence[Row]) -> str:
     lines: list[str] = []
     for row in rows:
         lines += _block(row)
-    good = sum(1 for row in rows if not row.wrong)
-    lines += ["", f"{good} of {len(rows)} drives are as expected" if len(rows) > 1 else ("as expected" if good else "not as expected")]
+    good = sum(1 for row in rows if row.expects and not row.wrong)
+    if len(rows) > 1:
+        lines += ["", f"{good} of {len(rows)} drives are as expected"]
     return "\n".join(lines)
 
 
-def _block(row: Row) -> Iterable[str]:
-    verdict = "ok" if not row.wrong else "NOT AS EXPECTED"
+def block(row: Row, width: int = WIDTH - 3) -> str:
+    """One drive as text, narrow enough to be indented."""
+    return "\n".join(_block(row, width))
+
+
+def _block(row: Row, width: int = WIDTH) -> Iterable[str]:
+    verdict = "driven" if not row.expects else "as expected" if not row.wrong else "NOT AS EXPECTED"
     yield f"{row.name:<24}{verdict}  (perception: {row.provenance})"
     for label, text in (("", row.expects), ("did", story(row.measures)), ("law", ", ".join(row.measures.sections)), ("", numbers(row.measures))):
         if text:
-            yield from textwrap.wrap(text, WIDTH, initial_indent=f"  {label:<5}", subsequent_indent=" " * 7)
+            yield from textwrap.wrap(text, width, initial_indent=f"  {label:<5}", subsequent_indent=" " * 7)
     for text in row.wrong:
-        yield from textwrap.wrap(text, WIDTH, initial_indent="  !    ", subsequent_indent=" " * 7)
+        yield from textwrap.wrap(shorten(text, 3 * REASON), width, initial_indent="  !    ", subsequent_indent=" " * 7)
 
 
 COLUMNS = ("variant", "perception", "what happened", "decided by", "least clearance", "top speed", "over the limit", "stood before the line", "time")
@@ -106,7 +121,7 @@ def markdown(rows: Sequence[Row]) -> str:
         found = row.measures
         cells = (
             row.name, row.provenance, story(found) + "".join(f" **({text})**" for text in row.wrong), ", ".join(found.sections),
-            _number(found.clearance, "m"), mph(found.top_speed), "no" if (found.excess or 0.0) <= 0.01 else f"{found.excess:.2f} m/s",
+            _number(found.clearance, "m"), mph(found.top_speed), "no" if (found.excess or 0.0) <= ROUNDING else f"{found.excess:.2f} m/s",
             _number(found.stop_gap, "m"), f"{found.time:.1f} s",
         )  # fmt: skip
         lines.append("| " + " | ".join(cell.replace("|", "/") for cell in cells) + " |")

@@ -19,7 +19,8 @@ class Expectation:
     """What a drive must show.
 
     `events`: exactly these, in order. `sections`: citations among those that decided. `zone_limit`: m/s that no tick in the zone exceeds.
-    `passes`: from which lane the cyclist is passed, empty when it is not. `crosses`: what the light shows as the line is crossed.
+    `passes`: from which lane the cyclist is passed, empty when it is not. `crosses`: what the light shows as the line is crossed. `ends`: how the
+    drive ends; a `standstill` is an end where the law cannot be known to allow going on, and says so.
     """
 
     says: str
@@ -28,6 +29,7 @@ class Expectation:
     zone_limit: float | None = None
     passes: Literal["", "same_lane", "next_lane"] = ""
     crosses: Literal["", "red", "green"] = ""
+    ends: Literal["destination", "standstill"] = "destination"
 
 
 @dataclass(frozen=True)
@@ -118,7 +120,8 @@ VARIANTS: tuple[Variant, ...] = (
         "keeps 25 mph: whether children go to school is not known", SLOWS, (), 25 * _MPH,
     )),
     Variant("no-eye", replace(_WHOLE, eye="none"), Expectation(
-        "nothing is told by perception: keeps to the strict reading of what the map says and arrives", (), (), 25 * _MPH,
+        "is blind to signs and people who direct traffic: drives on where that leaves nothing weightier open, and stays at the light",
+        (*OVERTAKES, "stopped"), ("CVC 21760(c)", "CVC 21453(a)"), passes="same_lane", ends="standstill",
     )),
 )  # fmt: skip
 """In the order in which they are listed and driven."""

@@ -18,6 +18,8 @@ AHEAD, BEHIND = 150.0, 60.0
 """Metres of path beyond the last lane driven in and before the first."""
 LONGEST_CHANGE = 6.0
 """Seconds on either side of the moment in which the middle of the vehicle passes the line that a change of lane lasts at most."""
+MOMENT = 5
+"""Rows on either side of one that being over a line must last to count: half a second at 10 Hz. Lanes' edges have kinks where lanes meet."""
 MOST_WAYS = 4
 """Ways on from a lane that are looked at when the recording ends before it shows which one was taken."""
 
@@ -31,6 +33,11 @@ class Change:
     side: Literal["left", "right"]
     first: int
     last: int
+    room: float = math.inf
+
+    def certain(self, error: float) -> bool:
+        """Whether there was one, however the places are off by an error: the middle was in either lane by more than that. `room`: by how much."""
+        return self.room > error
 
 
 @dataclass(frozen=True, eq=False)
@@ -50,6 +57,7 @@ class Course:
         self.graph, self.paths, self.motion, self.legs = graph, paths, motion, legs
         self.changes = tuple(_changes(graph, motion, legs))
         self._ways: dict[int, tuple[LanePath, ...]] = {}
+        self._out: list[bool] | None = None
 
     def at(self, row: int) -> Place | None:
         """The place at a row of the motion."""
@@ -60,6 +68,15 @@ class Course:
             return Place(row, change.before if row < self.legs[target].first else change.after, self._along(target), change)
         lane = self.legs[index].lane
         return None if lane is None else Place(row, lane, self._along(index), None)
+
+    def may_be_in_lane(self, row: int) -> bool:
+        """Whether being over a line at a row says little: for a moment only, or from the recording's beginning or to its end (a change of lane that
+        is shown in part)."""
+        if self._out is None:
+            lanes = [next(leg.lane for leg in self.legs if leg.first <= place <= leg.last) for place in range(len(self.motion.time))]
+            self._out = [lane is not None and not _within(self.graph, lane, self.motion, place) for place, lane in enumerate(lanes)]
+        near = self._out[max(row - MOMENT, 0) : row + MOMENT + 1]
+        return not all(near) or all(self._out[: row + 1]) or all(self._out[row:])
 
     def _along(self, index: int) -> tuple[LanePath, ...]:
         """The paths along one leg: the lanes it came by, its own, those it went on by, and every way on from where the recording stops telling."""
@@ -119,8 +136,15 @@ def _changes(graph: LaneGraph, motion: Motion, legs: Sequence[Leg]) -> list[Chan
         end = len(motion.time) - 1
         while last < end and not _within(graph, after.lane, motion, last + 1) and motion.time[last] - motion.time[after.first] < LONGEST_CHANGE:
             last += 1
-        found.append(Change(before.lane, after.lane, side, first, last))
+        room = min(_room(graph, before.lane, motion, before), _room(graph, after.lane, motion, after))
+        found.append(Change(before.lane, after.lane, side, first, last, room))
     return found
+
+
+def _room(graph: LaneGraph, lane: str, motion: Motion, leg: Leg) -> float:
+    """How far from the nearer boundary of a lane the middle of the vehicle came while in it."""
+    half = float(graph.road_map.lanes[lane].widths.mean()) / 2
+    return max(half - abs(offset_on(graph, lane, motion, row)) for row in range(leg.first, leg.last + 1))
 
 
 def _side(graph: LaneGraph, before: str, after: str) -> Literal["left", "right"] | None:

@@ -12,7 +12,8 @@ WORST: dict[str, int] = {"legal": 0, "unknown": 1, "illegal": 2}
 
 @dataclass(frozen=True, slots=True)
 class Said:
-    """What one rule says at one instant: `illegal` (broken) or `unknown` (may be). `measured` and `bound` in SI with `unit`, where it has a limit."""
+    """What one rule says at one instant: `illegal` (broken) or `unknown` (may be). `measured` and `bound` in SI with `unit`, where it has a limit.
+    `force`: the kind of limit."""
 
     rule: str
     citation: str
@@ -22,6 +23,7 @@ class Said:
     bound: float | None = None
     unit: str = ""
     missing: tuple[str, ...] = ()
+    force: str = ""
 
     @property
     def beyond(self) -> float:

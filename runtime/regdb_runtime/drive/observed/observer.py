@@ -18,7 +18,7 @@ import numpy as np
 
 from regdb.interpretation import Interpretation
 from regdb.regulation import Regulation
-from regdb.units import SI_SYMBOL, from_si, show_number, unit_named
+from regdb.units import SI_SYMBOL, from_si, unit_named
 from regdb_runtime.assessment.assessed import RANKS
 from regdb_runtime.assessment.assessor import Assessor
 from regdb_runtime.assessment.rejections import rejection
@@ -29,7 +29,7 @@ from regdb_runtime.drive.observed.course import Course
 from regdb_runtime.drive.observed.findings import Moment, Observed, Said, Word, observed
 from regdb_runtime.drive.observed.matching import match
 from regdb_runtime.drive.observed.reading import Reader
-from regdb_runtime.drive.observed.unseen import BEYOND_LANES, YIELDED, recorded_vehicle, unseen_facts, without
+from regdb_runtime.drive.observed.unseen import BEYOND_LANES, SHAPE, STRADDLES, YIELDED, recorded_vehicle, unseen_facts, without
 from regdb_runtime.errors import RequestError
 from regdb_runtime.maneuver import Maneuver
 from regdb_runtime.maps.lane_graph import LaneGraph
@@ -89,7 +89,8 @@ class Observer:
         self.database, self.replay = database, replay
         database.at(self.settings.place, self.settings.start.date())
         self._scripted = self.settings.eye == "scripted"
-        self.road_map = completed(road_map, self.settings.place, database.vocabulary, scripted=self._scripted)
+        told = completed(road_map, self.settings.place, database.vocabulary, scripted=self._scripted)
+        self.road_map = replace(told, facts={name: value for name, value in told.facts.items() if name not in SHAPE or name in road_map.facts})
         self.unseen = unseen_facts(database.vocabulary, replay.traffic, scripted=self._scripted)
         self._profile = without(profile_of(database, self.settings.interpretation), self.unseen)
         self._eye = build_eye(EyeSpec(self.settings.eye), database.vocabulary)
@@ -160,12 +161,16 @@ class _Watcher:
         readings = [self.observer._reader.read(self.motion, there, path, observation.tracks, self.footprint, self.state) for path in there.ways]
         self.history.update(observation, readings[0].lane_path, readings[0].junction)
         predictions = self.observer.others(self.motion, row, until)
-        word, said = _agreed([self._judge(observation, maneuver, predictions, row, until) for maneuver in readings], WAY_ON)
+        doubted = BEYOND_LANES | STRADDLES if self.course.may_be_in_lane(row) else BEYOND_LANES
+        answer = _agreed([self._judge(observation, maneuver, predictions, row, until, doubted) for maneuver in readings], WAY_ON)
+        if there.change is not None and not there.change.certain(self.observer.settings.place_error):
+            answer = _doubtful(answer)
+        word, said = answer
         self.state = readings[0].next
         track = self.motion.at(observation.time)
         return Moment(observation.time, track.x, track.y, there.lane, self.state, track.speed, word, said)
 
-    def _judge(self, observation: Observation, maneuver: Maneuver, predictions: Predictions, row: int, until: int) -> Answer:
+    def _judge(self, observation: Observation, maneuver: Maneuver, predictions: Predictions, row: int, until: int, doubted: frozenset[str]) -> Answer:
         """What holds for every place and speed within the errors."""
         unseen = self.observer.unseen | self._past_unseen(maneuver)
         stretches = [
@@ -173,7 +178,7 @@ class _Watcher:
             for item in self.scenes.stretches(observation, maneuver, self.history)
         ]
         driven = self._driven(maneuver.lane_path, row, until)
-        answers = [_worst(assessor.verdicts(maneuver, stretches, driven, predictions, BEYOND_LANES)) for assessor in self.assessors]
+        answers = [_worst(assessor.verdicts(maneuver, stretches, driven, predictions, doubted)) for assessor in self.assessors]
         return _beyond_doubt(_agreed(answers, PLACE), self.observer.settings)
 
     def _past_unseen(self, maneuver: Maneuver) -> frozenset[str]:
@@ -225,6 +230,12 @@ def _agreed(answers: Sequence[Answer], doubt: str) -> Answer:
     return "unknown", tuple(found.values())
 
 
+def _doubtful(answer: Answer) -> Answer:
+    """A breach found in a manoeuvre that may have been none."""
+    word, said = answer
+    return ("unknown", tuple(replace(item, word="unknown", missing=(PLACE,)) for item in said)) if word == "illegal" else answer
+
+
 def _beyond_doubt(answer: Answer, settings: ObserverSettings) -> Answer:
     """Broken only are limits that are exceeded by more than the error of what was measured."""
     word, said = answer
@@ -248,7 +259,8 @@ def _worst(answer: Sequence[tuple[Stretch, Verdict]]) -> Answer:
             for rule in verdict.deciding:
                 found = rejection(verdict, rule)
                 missing = verdict.judgement.missing((rule,)) if word == "unknown" else ()
-                now = Said(rule.id, rule.citation, word, in_words(rule, found), found.measured, found.bound, found.unit, tuple(missing))
+                because = in_words(rule, found)
+                now = Said(rule.id, rule.citation, word, because, found.measured, found.bound, found.unit, tuple(missing), rule.force)
                 if rule.id not in said or now.beyond > said[rule.id].beyond:
                     said[rule.id] = now
     return word, tuple(said.values())
@@ -261,7 +273,8 @@ def in_words(rule: Regulation, found: Rejection) -> str:
         return rule.result
     measured, bound = float(from_si(found.measured, limit.unit)), from_si(found.bound, limit.unit)
     what, word = limit.fact.removeprefix("plan.").replace("_", " "), "at most" if limit.direction == "max" else "at least"
-    return f"{what} {measured:.1f} {limit.unit}, {word} {show_number(bound)} {limit.unit} is lawful ({measured - float(bound):+.1f} {limit.unit})"
+    asked, unit = float(bound), limit.unit
+    return f"{what} {measured:.1f} {unit}, {word} {round(asked, 1):g} {unit} is lawful ({measured - asked:+.1f} {unit})"
 
 
 def profile_of(database: RegulationDatabase, name: str) -> Interpretation:
