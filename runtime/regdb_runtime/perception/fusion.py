@@ -91,13 +91,13 @@ class Fusion:
         why = self._degraded(now)
         assumed: frozenset[str] = frozenset()
         if not why and relevant is not None:
-            idle = (self._tells - relevant) - self._held.keys()
+            idle = (self._tells - relevant).difference(self._held)
             assumed = frozenset(name for name in idle if name in self._quiet)
             facts |= {name: self._quiet[name] for name in sorted(assumed)}
         return Snapshot(
             now, facts, {name: found.evidence for name, found in beliefs.items()},
             {name: now - max(item.captured for item in found.evidence) for name, found in beliefs.items()},
-            self._tells - facts.keys(), why, assumed, self.questions(now, travelled, relevant),
+            self._tells.difference(facts), why, assumed, self.questions(now, travelled, relevant),
         )  # fmt: skip
 
     def questions(self, now: float, travelled: float, relevant: frozenset[str] | None = None) -> tuple[Question, ...]:
