@@ -15,6 +15,9 @@ from regdb_runtime.perception.partial_json import Piece, first_object
 POSTED, SIGN = "posted.speed", "sign.speed_limit"
 """What a number on a speed-limit sign says."""
 
+_LONGEST_NUMBER = 16
+"""Characters of a number with its unit."""
+
 
 class ReadsText(Protocol):
     """Whatever reads prose: the matcher."""
@@ -182,6 +185,8 @@ def _number(fact: Fact, value: object) -> float | None:
     if isinstance(value, bool) or not isinstance(value, (int, float, str)):
         return None
     text = str(value).strip().lower()
+    if len(text) > _LONGEST_NUMBER:
+        return None
     if text.replace(".", "", 1).isdigit():
         text = f"{text} {fact.unit}"
     try:
