@@ -8,7 +8,7 @@ LOCAL_VLM := $(VENV)/.local-vlm
 .PHONY: demo test check law bench docs drives quick clean help local-vlm
 
 help:
-	@echo "make demo    lint, test and compile the shipped codes, and decide the paper's situations"
+	@echo "make demo    lint, test and compile the shipped codes, decide the paper's situations, drive its experiment"
 	@echo "make test    run every test"
 	@echo "make local-vlm   install torch and transformers, for the tests of the local vision client (1 GB)"
 	@echo "make check   style, types, layers, and everything make law does"
