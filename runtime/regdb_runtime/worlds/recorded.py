@@ -33,7 +33,10 @@ from regdb_runtime.worlds.replay import Motion, Replay
 REAR_OVERHANG, WHEELBASE = 0.198, 0.583
 """Shares of a vehicle's length: those of `Footprint`'s mid-size car, for vehicles of which only the rectangle was recorded."""
 
-ARROWS = frozenset(("lane.turns", "lane.turn_marked", "lane.designated_for_turn"))
+NEVER_SCRIPTED = frozenset((
+    "intersection.control", "signal.present", "signal.place", "sign.stop", "sign.yield", "sign.all_way", "sign.speed_limit", "stop_line.present",
+))  # fmt: skip
+"""What controls a junction, posted limits: these streets have them, and where their map leaves them out they are not absent."""
 
 
 class RecordedWorld:
@@ -143,10 +146,9 @@ def completed(road_map: RoadMap, place: str, vocabulary: Vocabulary, *, scripted
 
 
 def uneventful(vocabulary: Vocabulary) -> dict[str, Value]:
-    """What a surveyed map says where there is nothing unusual, in the vocabulary's quiet values. Arrows on the lanes are not scripted: such maps
-    have lanes that turn and say nothing of their arrows."""
+    """What a surveyed map says where there is nothing unusual, in the vocabulary's quiet values, less what is never taken for granted."""
     quiet = {name: value for name, value in quiet_facts(vocabulary).items() if vocabulary.facts[name].source == "map"}
-    return {name: value for name, value in {**quiet, **surveyed_facts(vocabulary)}.items() if name not in ARROWS}
+    return {name: value for name, value in {**quiet, **surveyed_facts(vocabulary)}.items() if name not in NEVER_SCRIPTED}
 
 
 def _read_start(text: str) -> datetime.datetime:

@@ -25,8 +25,11 @@ BEYOND_LANES = frozenset(("plan.leaves_roadway",))
 """Measured, and left unknown where found true: such maps do not say what lies beyond their outermost lanes."""
 STRADDLES = frozenset(("plan.straddles_lanes",))
 """Likewise while it may belong to a change of lane that the recording shows only in part."""
-SHAPE = frozenset(("road.types", "road.two_way", "road.one_way", "road.lanes", "road.lanes_same_direction", "road.divided", "ego.lane_position"))
-"""What a map's lanes show themselves, or leave open: which half of the road is missing from it is not for a script to say."""
+SHAPE = frozenset((
+    "lane.turns", "lane.turn_marked", "lane.designated_for_turn", "road.types", "road.two_way", "road.one_way", "road.lanes",
+    "road.lanes_same_direction", "road.divided", "ego.lane_position",
+))  # fmt: skip
+"""What a map's lanes show themselves, or leave open: their arrows, and the half of the road that is missing from it, are not for a script to say."""
 BY_VIEW = frozenset(("plan.lacks_due_care", "speed.unsafe_for_conditions"))
 """Judgements on how far the driver saw a clear road."""
 MAKE = frozenset((
