@@ -120,7 +120,7 @@ class Pass:
         found = np.where(along > NEAR, along, np.inf)
         rows, instants = np.nonzero(along <= NEAR)
         if len(rows):
-            found[rows, instants] = distance(self.plans.boxes[rows, instants], self.other.boxes[instants])
+            found[rows, instants] = distance(self.plans.boxes(rows, instants), self.other.boxes[instants])
         return np.asarray(np.minimum(found.min(axis=1), self.side_gap[:, -1]))
 
 

@@ -38,14 +38,16 @@ def violations(judged: Judged, settings: AssessmentSettings, rank: int = UNLAWFU
 
 
 def _amount(rule: Regulation, group: Group, facts: PlanFacts) -> Floats:
-    """How far each plan of a group breaks one rule, (m,): the share of the bound by which it is beyond a limit, at most 1; 1 without limit."""
+    """How far each plan of a group breaks one rule, (m,) or (1,) for all: the share of the bound by which it is beyond a limit, at most 1."""
+    if not rule.limits:
+        return np.ones(1)
     verdict = group.verdict
     situation = Situation(verdict.circumstances.vocabulary, verdict.scene, verdict.plan)
     found, names = np.zeros(len(group.rows)), facts.names(group.stretch)
     for limit in rule.limits:
         bound = linear_value(limit.bound, situation)
         if bound is None or limit.fact not in names:
-            return np.ones(len(group.rows))
+            return np.ones(1)
         beyond = facts.beyond(group.stretch, limit.fact, group.rows, bound, limit.direction)
-        found = np.maximum(found, np.clip(np.nan_to_num(beyond) / max(abs(bound), 1e-9), 0.0, 1.0))
-    return found if rule.limits else np.ones(len(group.rows))
+        found = np.fmax(found, np.fmin(beyond / max(abs(bound), 1e-9), 1.0))
+    return found
