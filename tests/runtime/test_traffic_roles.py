@@ -166,7 +166,7 @@ def test_oncoming_traffic_and_room_to_pass_on_the_left() -> None:
     assert far["oncoming.clear_for_passing"] is False
     assert far["oncoming.within_100_ft"] is True
     alone = roles(street(), rider, speed=12.0, **passing)
-    assert "oncoming.clear_for_passing" not in alone  # 120 m of sight do not show that nobody comes while it lasts
+    assert "oncoming.clear_for_passing" not in alone  # 200 m of sight do not show that nobody comes while it lasts
     assert "oncoming.clear_for_passing" not in roles(street(), rider)
 
 

@@ -38,7 +38,7 @@ class PlannerLike(Protocol):
 class SumoEgoSettings:
     """`sensor_range`, `lights_range` metres; `rear_overhang`, `wheelbase` shares of the vehicle's length, which SUMO does not know."""
 
-    sensor_range: float = 120.0
+    sensor_range: float = 200.0
     lights_range: float = 120.0
     rear_overhang: float = 0.2
     wheelbase: float = 0.58

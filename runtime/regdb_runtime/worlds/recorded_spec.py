@@ -49,7 +49,7 @@ class RecordedSpec:
     lights: LightsSpec = field(default_factory=LightsSpec)
     eye: EyeSpec = field(default_factory=EyeSpec)
     footprint: Footprint = field(default_factory=Footprint)
-    sensor_range: float = 120.0
+    sensor_range: float = 200.0
     lights_range: float = 120.0
 
     def to_json(self) -> str:

@@ -159,7 +159,7 @@ class SceneSpec:
     pedestrians: tuple[PedestrianSpec, ...] = ()
     parked: tuple[ParkedSpec, ...] = ()
     eye: EyeSpec = field(default_factory=EyeSpec)
-    sensor_range: float = 120.0
+    sensor_range: float = 200.0
     lights_range: float = 120.0
 
     def to_json(self) -> str:
