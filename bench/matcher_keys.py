@@ -100,7 +100,7 @@ def _speed(text: str, item: Statement) -> str:
     """The number in the unit written, bare where none is."""
     assert isinstance(item.value, (int, float))
     unit = next((match[0].lower() for span in item.spans if (match := _WRITTEN.search(text[span.start : span.end]))), "")
-    if unit.startswith("k"):
+    if unit.startswith("k") or (not unit and abs(item.value / _MPH - round(item.value / _MPH)) > 0.01):
         return f"{round(item.value / _KMH, 1):g} km/h"
     return f"{round(item.value / _MPH, 1):g}{' mph' if unit else ''}"
 

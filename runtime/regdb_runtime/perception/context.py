@@ -4,11 +4,13 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 
-from regdb_runtime.perception.cues import ASKING, CUES, DEFINITE, HEARTS, NO_DENIAL, OPENERS, PLACES, TAKES_OBJECT
+from regdb_runtime.perception.cues import ASKING, CUES, DEFINITE, NOT_PAST, POINTING, HEARTS, NO_DENIAL, OPENERS, PLACES, TAKES_OBJECT
 from regdb_runtime.perception.lexicon import FILLERS
 from regdb_runtime.perception.sentences import Sentence, tokens
+from regdb_runtime.perception.word_set import word_set
 
 _STRONG = frozenset(";:()?")
+_DENIALS = frozenset(("negation", "not", "denied_after"))
 _LIST_ENDS = frozenset(("or", "nor", "and"))
 NOT_REACH, HEDGE_REACH, AFTER_REACH, FUTURE_REACH = 3, 6, 6, 5
 """Tokens over which `not`, `may`, `... not visible` and `will` reach."""
@@ -48,22 +50,23 @@ class Context:
     aside: dict[int, str] = field(default_factory=dict)
     soft: dict[int, str] = field(default_factory=dict)
     colors_aside: dict[int, str] = field(default_factory=dict)
-    over: set[int] = field(default_factory=set)
 
-    def why_aside(self, first: int) -> str:
-        """Why a phrase that begins at this token is no statement about the scene now; empty when it is one."""
-        found = self.aside.get(first, "")
-        if not found and first in self.soft and not definite(self.said, first):
-            found = self.soft[first]
-        return found
+    def why_aside(self, places: list[int]) -> str:
+        """Why a phrase that rests on these tokens is no statement about the scene now; empty when it is one."""
+        for at in places:
+            if at in self.aside:
+                return self.aside[at]
+        if places[0] in self.soft and not definite(self.said, places[0]):
+            return self.soft[places[0]]
+        return ""
 
 
-def definite(said: list[str], first: int) -> bool:
-    """Whether a determiner stands before the noun phrase that begins here: `the red light`, not `pedestrians`."""
+def definite(said: list[str], first: int, determiners: frozenset[str] = DEFINITE) -> bool:
+    """Whether one of these determiners stands before the noun phrase that begins here: `the red light`, not `pedestrians`."""
     at = first - 1
     while at >= 0 and first - at <= 4:
         word = said[at]
-        if word in DEFINITE:
+        if word in determiners:
             return True
         if word in ("and", "or", "any", "of") or not word.isalpha() or word in PLACES:
             return False
@@ -75,10 +78,10 @@ def cues_of(said: list[str], spoken_for: int) -> list[Cue]:
     """Every cue, longest first at each token; tokens that a fact's phrase has used (`no parking`) begin none."""
     found: list[Cue] = []
     for at, word in enumerate(said):
-        if word in _BY_FIRST and not spoken_for >> at & 1:
+        if word in _BY_FIRST:
             seen: set[str] = set()
             for rest, kind in _BY_FIRST[word]:
-                if kind not in seen and (not rest or tuple(said[at + 1 : at + 1 + len(rest)]) == rest):
+                if kind not in seen and not (kind in _DENIALS and spoken_for >> at & 1) and (not rest or tuple(said[at + 1 : at + 1 + len(rest)]) == rest):
                     seen.add(kind)
                     found.append(Cue(kind, at, at + len(rest)))
     return found
@@ -96,8 +99,8 @@ def context_of(sentence: Sentence, spoken_for: int, last_of: list[tuple[int, int
             _negation(context, cue, breaks)
         elif cue.kind == "not":
             _not(context, cue, breaks)
-        elif cue.kind == "denied_after":
-            _denied_after(context, cue, last_of, breaks)
+        elif cue.kind in ("denied_after", "ended_after"):
+            _said_after(context, cue, last_of, breaks)
         elif cue.kind == "hedge":
             _hedge(context, cue, last_of)
         elif cue.kind in _ASIDE:
@@ -150,9 +153,9 @@ def _reach(said: list[str], at: int, breaks: set[int]) -> int:
             if after >= len(said) or said[after] not in HEARTS:
                 return at
             at = after
-        elif passed and word.endswith("ing") and len(word) > 5:
+        elif passed and word.endswith("ing") and len(word) > 5 and said[at - 1] != "sign":
             return at
-        elif word not in FILLERS and word != "of":
+        elif word not in FILLERS and word not in ("of", "1"):
             passed = True
         at += 1
     return at
@@ -193,11 +196,13 @@ def _not(context: Context, cue: Cue, breaks: set[int]) -> None:
             context.denied.add(later)
 
 
-def _denied_after(context: Context, cue: Cue, last_of: list[tuple[int, int]], breaks: set[int]) -> None:
-    """`traffic lights are not visible`, `pedestrians: none`."""
+def _said_after(context: Context, cue: Cue, last_of: list[tuple[int, int]], breaks: set[int]) -> None:
+    """`traffic lights are not visible`, `pedestrians: none`, `the cones have been removed`."""
     said = context.said
-    if said[cue.first] in ("none", "no", "0", "false") and (cue.first == 0 or said[cue.first - 1] not in (":", "-") or (cue.last + 1 < len(said) and said[cue.last + 1] not in ",;.")):
-        return
+    if said[cue.first] in ("none", "no", "0", "false"):
+        listed = cue.first > 0 and said[cue.first - 1] in ":-"
+        if not listed or (cue.last + 1 < len(said) and said[cue.last + 1] not in ",;"):
+            return
     near = [(first, last) for first, last in last_of if last < cue.first and cue.first - last <= AFTER_REACH]
     if not near:
         return
@@ -208,11 +213,15 @@ def _denied_after(context: Context, cue: Cue, last_of: list[tuple[int, int]], br
     for first, last in sorted(near, key=lambda item: -item[1]):
         between = said[last + 1 : reached]
         if last == edge or (reached - last <= 3 and any(word in _LIST_ENDS or word == "," for word in between)):
-            if any(word in ("status", "state", "color", "phase", "gesture", "legend", "text", "speed", "side", "end") for word in said[max(0, first - 4) : first]):
-                context.aside.setdefault(first, "unsure") if False else None
-            else:
+            if cue.kind == "ended_after":
+                context.aside.setdefault(first, "ended")
+            elif not _ABOUT_IT.intersection(said[max(0, first - 4) : first]):
                 context.denied.add(first)
             reached = first
+
+
+_ABOUT_IT = word_set("status state color phase gesture legend text speed side end")
+"""`The status of the light is not visible` denies no light."""
 
 
 def _hedge(context: Context, cue: Cue, last_of: list[tuple[int, int]]) -> None:
@@ -223,7 +232,7 @@ def _hedge(context: Context, cue: Cue, last_of: list[tuple[int, int]]) -> None:
         context.hedged.add(at)
     if said[cue.first] in ("may", "might", "could"):
         for first, last in last_of:
-            if last < cue.first <= last + 2 and not definite(said, first):
+            if last < cue.first <= last + 2 and not definite(said, first, POINTING):
                 context.hedged.add(first)
 
 
@@ -233,8 +242,7 @@ def _condition(context: Context, cue: Cue) -> None:
 
 def _when(context: Context, cue: Cue) -> None:
     said = context.said
-    clause = said[cue.last + 1 : _comma(said, cue.last + 1)]
-    if any(word.endswith("ed") or word in ("was", "were", "had", "began", "came", "saw", "went", "stood") for word in clause):
+    if any(is_past(word) for word in said[cue.last + 1 : _comma(said, cue.last + 1)]):
         return
     _until_comma(context, cue, context.soft, "conditional")
     _until_comma(context, cue, context.colors_aside, "conditional")
@@ -260,8 +268,8 @@ def _ended(context: Context, cue: Cue) -> None:
             break
         if not by_other:
             context.aside.setdefault(at, "ended")
-    if by_other:
-        context.over.update(range(cue.first, len(said)))
+    for at in range(cue.first, cue.last + 1):
+        context.aside.setdefault(at, "ended")
 
 
 def _advice(context: Context, cue: Cue) -> None:
@@ -270,11 +278,30 @@ def _advice(context: Context, cue: Cue) -> None:
     led = before < 0 or said[before] in (",", ":", "-", "and", ";", "then", "or") or said[cue.first].endswith("ing")
     if not led:
         led = any(other.kind == "modal" and other.last < cue.first and cue.first - other.last <= 6 for other in context.cues)
+    start = max((at + 1 for at in range(cue.first) if said[at] in _STRONG or said[at] == ","), default=0)
+    if any(is_past(word) for word in said[start : cue.first]):
+        return
     if led:
         _until_comma(context, cue, context.soft, "advice", commas=True)
 
 
+def _other(context: Context, cue: Cue) -> None:
+    """`oncoming traffic has a green light`, `the light for the cross street is red`: no light of ours."""
+    said = context.said
+    before = [word for word in said[max(0, cue.first - 3) : cue.first] if word not in FILLERS]
+    if before and before[-1] in ("for", "facing") or cue.first and said[cue.first - 1] == "for":
+        for at in range(max(0, cue.first - 7), cue.last + 1):
+            context.colors_aside.setdefault(at, "other road user")
+    if any(word in ("have", "face", "facing", "get", "see", "given") for word in said[cue.last + 1 : cue.last + 4]):
+        for at in range(cue.last + 1, min(len(said), cue.last + 9)):
+            if said[at] in _STRONG or said[at] in (",", "but", "because", "while"):
+                break
+            context.colors_aside.setdefault(at, "other road user")
+
+
 def _generic(context: Context, cue: Cue) -> None:
+    if cue.first and context.said[cue.first - 1] in ("ego", "our", "my", "your", "subject", "the"):
+        return
     for at in range(len(context.said)):
         if at > cue.last or at <= 1 or said_of_all(context.said):
             context.soft.setdefault(at, "generic")
@@ -283,6 +310,11 @@ def _generic(context: Context, cue: Cue) -> None:
 def said_of_all(said: list[str]) -> bool:
     """Whether the sentence begins with a bare plural or `even with`, as rules for everybody do."""
     return said[0] in ("even", "driver", "vehicle", "all", "every", "in", "when")
+
+
+def is_past(word: str) -> bool:
+    """Whether this is a verb of a story: `turned`, `was`."""
+    return (word.endswith("ed") and word not in NOT_PAST) or word in ("was", "were", "had", "began", "came", "saw", "went", "stood")
 
 
 def _comma(said: list[str], at: int) -> int:
@@ -301,6 +333,6 @@ def _until_comma(context: Context, cue: Cue, into: dict[int, str], why: str, *, 
 
 
 _ASIDE = {
-    "condition": _condition, "when": _when, "until": _until, "future": _future, "ended": _ended, "advice": _advice, "generic": _generic,
+    "condition": _condition, "other": _other, "when": _when, "until": _until, "future": _future, "ended": _ended, "advice": _advice, "generic": _generic,
     "unsure": lambda context, cue: _until_comma(context, cue, context.aside, "unsure"),
 }  # fmt: skip

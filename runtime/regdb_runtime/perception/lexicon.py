@@ -10,6 +10,7 @@ from dataclasses import dataclass, field
 from regdb.vocabulary import Fact, Value, Vocabulary
 from regdb_runtime.perception.normalise import normalise
 from regdb_runtime.perception.sentences import Sentence, tokens
+from regdb_runtime.perception.word_set import word_set
 
 SWALLOW = "swallow"
 """The word class whose phrases mean something else than the shorter phrases within them."""
@@ -20,9 +21,12 @@ NUMBER = "{n}"
 BREAKS = frozenset(",.;:!?()\n-")
 QUOTES = frozenset("\"'[]")
 
-FILLERS = frozenset(
-    ["a", "an", "the", "this", "that", "these", "those", "some", "any", "several", "many", "few", "multiple", "various", "both", "all", "each", "every", "our", "its", "their", "his", "her", "my", "your", "is", "are", "was", "were", "be", "been", "being", "am", "s", "have", "had", "currently", "now", "already", "still", "also", "very", "just", "clearly", "really", "quite", "directly", "immediately", "visible", "immediate", "apparent", "obvious", "other", "another", "certain", "large", "small", "big", "little", "tall", "short", "old", "new", "active", "notable", "specific", "particular", "slowly", "quickly", "safely", "carefully", "there", "here", "fully", "completely", "more", "most", "discernible", "single", "both"]
-)
+FILLERS = word_set(
+    """a an the this that these those some any several many few multiple various both all each every our its their his her my your is are was
+    were be been being am s have had currently now already still also very just clearly really quite directly immediately visible immediate
+    apparent obvious other another certain large small big little tall short old new active notable specific particular slowly quickly
+    safely carefully there it fully completely more most discernible single"""
+) | frozenset("\"'[]")
 """Words a phrase is read over: articles, forms of `be`, adverbs and adjectives that change no fact. Negations are never among them."""
 
 
@@ -64,16 +68,14 @@ class PhraseError(ValueError):
 
 _DIGITS = frozenset("0123456789")
 ARTICLES = frozenset(("the", "a", "an"))
-GLUE = frozenset(
-    """at in on near along around from with through behind beside within across toward into by of to for and or is as off over under
-    read say state show cover ahead follow not block obstruct ban prohibit forbid mark designate after before between due {n}""".split()
+GLUE = word_set(
+    """at in on near along around from with through behind beside within across toward into by of to for and or is as off over under enter read
+    say state show cover ahead follow not block obstruct ban prohibit forbid mark designate after before between due {n}"""
 )
 """Words beside which an article changes nothing: prepositions, verbs that take objects."""
 _SOLID = ("vehicle", "person", "light_head", "place")
 """Word classes whose words no gap passes over: what stands behind them belongs to them."""
 _PIECES = re.compile(r"\{[^}]+\}|[^{]+")
-KEPT = frozenset(("our",))
-"""Fillers that count where a phrase names them."""
 _END = ""
 
 
@@ -89,13 +91,14 @@ class Lexicon:
             self._add_class(name, words)
         self.solid = frozenset(word for name in _SOLID for word in self.class_of(name))
         self.own = self.class_of("own")
+        self.owned = {word: _owned(keys) for word, keys in self.members.items()}
         self._starts: dict[str, tuple[dict[str, object], ...]] = {}
 
     def _add_class(self, name: str, words: Iterable[str]) -> None:
         key = "{" + name + "}"
         self.longer.setdefault(key, [])
         for word in words:
-            parts = [part for part in tokens(normalise(word).text) if part not in FILLERS or part in KEPT]
+            parts = [part for part in tokens(normalise(word).text) if part not in FILLERS]
             if len(parts) == 1:
                 self.members[parts[0]] = (*self.members.get(parts[0], ()), key)
             elif parts:
@@ -137,7 +140,7 @@ class Lexicon:
                 yield [word]
                 yield from self.longer[word]
             else:
-                yield [token for token in tokens(normalise(word).text) if token not in BREAKS and (token not in FILLERS or token in KEPT)]
+                yield [token for token in tokens(normalise(word).text) if token not in BREAKS and token not in FILLERS]
 
     def _insert(self, path: list[str], entry: Entry) -> None:
         node = self.root
@@ -169,8 +172,8 @@ class Lexicon:
             if nodes is None:
                 nodes = starts(word)
             if nodes:
-                if begin and word in self.members and words[kept[begin] - 1] in self.own:
-                    nodes = (self.root[word],) if word in self.root else ()  # type: ignore[assignment]
+                if kept[begin] and word in self.members and words[kept[begin] - 1] in self.own:
+                    nodes = tuple(self.root[key] for key in (word, *self.owned[word]) if key in self.root)  # type: ignore[misc]
                 following = sequence[begin + 1] if begin + 1 < size else ","
                 open_ended = following in self.members or following[0] in _DIGITS
                 for node in nodes:
@@ -209,8 +212,8 @@ class Lexicon:
             following = node.get(word)
             if following is not None:
                 stack.append((following, at + 1, mask | 1 << place, number, place))  # type: ignore[arg-type]
-            if word in members and words[place - 1] not in own:
-                for key in members[word]:
+            if word in members:
+                for key in members[word] if words[place - 1] not in own else self.owned[word]:
                     following = node.get(key)
                     if following is not None:
                         stack.append((following, at + 1, mask | 1 << place, number, place))  # type: ignore[arg-type]
@@ -218,6 +221,12 @@ class Lexicon:
                 following = node.get(NUMBER)
                 if following is not None:
                     stack.append((following, at + 1, mask | 1 << place, place, place))  # type: ignore[arg-type]
+
+
+def _owned(keys: tuple[str, ...]) -> tuple[str, ...]:
+    """The classes of a word behind `our` or `ego`: our car is no other vehicle, it is us."""
+    others = tuple(key for key in keys if key not in ("{vehicle}", "{person}"))
+    return (*others, "{us}") if len(others) < len(keys) and "{us}" not in others else others
 
 
 def _glued(before: str, word: str) -> bool:

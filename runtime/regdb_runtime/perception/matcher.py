@@ -9,7 +9,7 @@ from regdb.units import UnitError, to_si, unit_named
 from regdb.vocabulary import Value, Vocabulary
 from regdb_runtime.perception.context import Context, context_of
 from regdb_runtime.perception.evidence import Certainty, Reading, Span, Statement
-from regdb_runtime.perception.lexicon import BREAKS, FILLERS, GAP, QUOTES, Match, compile_lexicon
+from regdb_runtime.perception.lexicon import ARTICLES, FILLERS, GAP, QUOTES, Match, compile_lexicon
 from regdb_runtime.perception.normalise import Normalised, normalise
 from regdb_runtime.perception.relations import ACTS, PLACES_CROSSED, LightWords, Shown, crossing_is_act, lights
 from regdb_runtime.perception.sentences import Sentence, sentences
@@ -80,22 +80,24 @@ class _SentenceReader:
     def read(self, before: bool) -> None:
         """Find, weigh and record."""
         matcher, words = self.matcher, self.sentence.words
-        found = _longest(matcher._lexicon.find(self.sentence), words)
+        all_found = matcher._lexicon.find(self.sentence)
+        found = _longest(all_found, words)
         swallowed = 0
-        for match in found:
-            if not match.entry.effects:
+        for match in all_found:
+            if not match.entry.effects and (GAP in match.entry.phrase or _close(match, words)):
                 swallowed |= match.mask
         shown = list(lights(self.sentence, matcher._lights, swallowed, before)) if matcher._has_lights else []
         self.ends_with_light = any(word in matcher._lights.heads for word in words)
         limits = [found for found in speeds(self.sentence, matcher._speeds) if found.fact in matcher._facts] if self.sentence.numbers else []
-        facts = [match for match in found if match.entry.effects and self._meant(match)]
+        facts = [match for match in found if self._meant(match)]
         if not facts and not shown and not limits:
             return
         self._decided = {limit.number: limit.fact for limit in limits}
         denying = 0
         for match in facts:
             denying |= match.mask
-        context = context_of(self.sentence, denying, [(match.first, match.last) for match in facts])
+        places = [(match.first, match.last) for match in facts] + [(light.anchor, light.mask.bit_length() - 1) for light in shown]
+        context = context_of(self.sentence, denying, places)
         for match in facts:
             self._record(match, context)
         for light in shown:
@@ -120,16 +122,16 @@ class _SentenceReader:
         return True
 
     def _record(self, match: Match, context: Context) -> None:
-        why = context.why_aside(match.first)
-        denied = match.first in context.denied
-        hedged = match.first in context.hedged
+        places = [at for at in range(match.first, match.last + 1) if match.mask >> at & 1]
+        why = context.why_aside(places)
+        denied = not context.denied.isdisjoint(places)
+        hedged = not context.hedged.isdisjoint(places)
         for effect in match.entry.effects:
             value = effect.value if effect.value is not None else self._number(effect.fact, match.number)
             if value is None or (effect.fact in _SPEEDS and self._decided.get(match.number, effect.fact) != effect.fact):
                 continue
             if effect.fact == "signal.color" and not why:
                 why = next((context.colors_aside[at] for at in range(match.first, match.last + 1) if at in context.colors_aside), "")
-                denied = denied or match.last in context.denied
             if why or (denied and not isinstance(value, bool)):
                 self.aside.append((effect.fact, match.mask, why or "denied"))
             else:
@@ -138,6 +140,8 @@ class _SentenceReader:
     def _number(self, name: str, at: int) -> Value | None:
         """The number at this token in SI; without a unit the fact's usual one is meant. None where the unit does not fit."""
         number = self.sentence.numbers.get(at)
+        if number is not None and not number.unit:
+            number = next((other for other in self.sentence.numbers.values() if other.value == number.value and other.unit), number)
         fact = self.matcher._facts[name]
         if number is None:
             return None
@@ -152,17 +156,18 @@ class _SentenceReader:
     def _record_speed(self, limit: Speed, context: Context) -> None:
         first = (limit.mask & -limit.mask).bit_length() - 1
         value = self._number(limit.fact, limit.number)
-        why = context.why_aside(first) or ("denied" if first in context.denied else "")
+        last = limit.mask.bit_length() - 1
+        why = context.why_aside([first, last]) or ("denied" if first in context.denied or last in context.denied else "")
         if value is None:
             return
         if why:
             self.aside.append((limit.fact, limit.mask, why))
         else:
-            self.said.append(_Said(limit.fact, value, limit.mask, "number on a sign", first in context.hedged))
+            self.said.append(_Said(limit.fact, value, limit.mask, "number on a sign", first in context.hedged or last in context.hedged))
 
     def _record_light(self, light: Shown, context: Context) -> None:
         first, last = light.anchor, light.mask.bit_length() - 1
-        why = context.why_aside(first) or context.aside.get(last, "")
+        why = context.why_aside([first, last])
         why = why or next((context.colors_aside[at] for at in range(first, last + 1) if at in context.colors_aside), "")
         if not why and (first in context.denied or last in context.denied):
             why = "denied"
@@ -214,26 +219,45 @@ class _SentenceReader:
 
 
 def _longest(found: list[Match], words: list[str]) -> list[Match]:
-    """Matches that lie within no longer one; legends only where they stand alone."""
+    """Matches that lie within no longer one; legends only where they stand alone; what a swallowing phrase touches is gone."""
     kept: list[Match] = []
     masks: list[int] = []
-    for match in sorted(found, key=lambda match: -match.mask.bit_count()):
-        entry = match.entry
+    swallows: list[int] = []
+    for match in sorted(found, key=_size):
+        entry, mask = match.entry, match.mask
         if entry.legend and not _alone(match, words):
             continue
-        if not entry.effects and GAP not in entry.phrase and match.mask.bit_count() != match.last - match.first + 1:
+        if not entry.effects:
+            if GAP in entry.phrase or _close(match, words):
+                swallows.append(mask)
             continue
-        mask = match.mask
         if any(mask & other == mask and mask != other for other in masks):
             continue
         masks.append(mask)
         kept.append(match)
-    return sorted(kept, key=lambda match: match.first)
+    if swallows:
+        kept = [match for match in kept if not any(match.mask & other and match.mask & other != other for other in swallows if other != match.mask)]
+        masks.append(0)
+    return [match for match in kept if not (words[match.first] == "no" and _runs_on(match, kept))] if "no" in words else kept
+
+
+def _size(match: Match) -> tuple[int, int]:
+    return -match.mask.bit_count(), match.first
+
+
+def _close(match: Match, words: list[str]) -> bool:
+    """Whether nothing but articles stands between the tokens of a match."""
+    return all(match.mask >> at & 1 or words[at] in ARTICLES for at in range(match.first, match.last + 1))
+
+
+def _runs_on(match: Match, kept: list[Match]) -> bool:
+    """Whether the `no` of a match denies a longer noun instead: `no parking lot` forbids no parking."""
+    return any(other.first > match.first and other.mask >> match.last & 1 and other.last > match.last for other in kept)
 
 
 def _alone(match: Match, words: list[str]) -> bool:
     """Whether the phrase is a legend: all of the sentence, or between quotation marks, or before the word `sign`."""
     before, after = match.first - 1, match.last + 1
-    opened = before < 0 or words[before] in BREAKS or words[before] in QUOTES
-    closed = after >= len(words) or words[after] in BREAKS or words[after] in QUOTES
+    opened = before < 0 or words[before] in QUOTES or words[before] in ":-"
+    closed = after >= len(words) or words[after] in QUOTES
     return (opened and closed) or (after < len(words) and words[after] == "sign")

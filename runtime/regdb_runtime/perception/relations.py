@@ -7,14 +7,21 @@ from dataclasses import dataclass
 
 from regdb_runtime.perception.lexicon import BREAKS, FILLERS, Lexicon
 from regdb_runtime.perception.sentences import Sentence
+from regdb_runtime.perception.word_set import word_set
 
-LINKS = frozenset(
-    ["is", "are", "was", "were", "be", "being", "been", "remain", "remaining", "remained", "stay", "show", "showing", "shown", "showed", "display", "displaying", "displayed", "turn", "turning", "turned", "indicate", "indicating", "indicated", "become", "became", "change", "changing", "changed", "appear", "appearing", "seem", "seeming", "look", "looking", "go", "going", "went", "stay", "staying", "read", "reading", "lit", "illuminated", "flash", "flashing", "flashed", "glow", "glowing", "glowed", "have", "having", "has", "switch", "switched", "switching", "shine", "shining", "shone", "with", "in", "to", "emit", "emitting", "at"]
+LINKS = word_set(
+    """is are was were be being been remain remaining remained stay show showing shown showed display displaying displayed turn turning turned
+    indicate indicating indicated become became change changing changed appear appearing seem seeming look looking go going went staying
+    read reading lit illuminated flash flashing flashed glow glowing glowed have having has blink blinking blinked switch switched switching shine shining shone
+    with in to emit emitting at"""
 )
 """Between a light and its colour: `the light IS red`, `SHOWING green`."""
-_LEFT_WORDS = frozenset(["solid", "steady", "circular", "round", "bright", "illuminated", "lit", "flashing", "blinking", "single", "large", "traffic", "left", "right", "straight", "turn", "turning", "and", "or", ",", "/", "bold", "clear", "vertical", "horizontal", "pointing", "signal", "light", "arrow", "color", "colored", "hue", "hued", "lamp", "led"])
-_FLASHING = frozenset(["flashing", "blinking", "flash", "blink", "flashed"])
-_PRONOUNS = frozenset(["it", "they", "which", "that", "both"])
+_LEFT_WORDS = word_set(
+    """solid steady circular round bright illuminated lit flashing blinking single large traffic left right straight turn turning and or , /
+    bold clear vertical horizontal pointing signal light arrow color colored hue hued lamp led"""
+)
+_FLASHING = word_set("flashing blinking flash blink flashed")
+_PRONOUNS = word_set("it they which that both")
 _FORWARD = 14
 """Tokens after a light within which its colour is looked for."""
 
@@ -32,23 +39,24 @@ class Shown:
 
 @dataclass(frozen=True, slots=True)
 class LightWords:
-    """The vocabulary's word classes that lights need: heads, arrows, colours by word, what else has a colour."""
+    """The vocabulary's word classes that lights need: heads, arrows, colours by word, other things that have colours or lamps."""
 
     heads: frozenset[str]
     arrows: frozenset[str]
     colors: dict[str, str]
+    things: frozenset[str]
 
     @classmethod
     def of(cls, lexicon: Lexicon) -> LightWords:
-        """From the classes `light`, `arrow`, `red`, `yellow`, `green`."""
+        """From the classes whose names begin with `light_`."""
         colors = {word: color for color in ("red", "yellow", "green") for word in lexicon.class_of(f"light_{color}")}
-        return cls(lexicon.class_of("light_head"), lexicon.class_of("light_arrow"), colors)
+        return cls(lexicon.class_of("light_head"), lexicon.class_of("light_arrow"), colors, lexicon.class_of("light_thing"))
 
 
 def lights(sentence: Sentence, words: LightWords, swallowed: int, before: bool) -> Iterator[Shown]:
     """Every colour a light of the sentence is said to show. `before`: the sentence before ended speaking of a light."""
     said = sentence.words
-    heads = [at for at, word in enumerate(said) if (word in words.heads or word in words.arrows) and not swallowed >> at & 1]
+    heads = [at for at, word in enumerate(said) if (word in words.heads or word in words.arrows) and not swallowed >> at & 1 and not _of_another(said, at, words)]
     if not heads and not before:
         return
     colors = [at for at, word in enumerate(said) if word in words.colors and not swallowed >> at & 1]
@@ -67,6 +75,16 @@ def lights(sentence: Sentence, words: LightWords, swallowed: int, before: bool) 
     if before and not taken and said[0] in _PRONOUNS:
         for at in _right(said, 0, len(said), words):
             yield _shown(said, at, 0, words)
+
+
+def _of_another(said: list[str], head: int, words: LightWords) -> bool:
+    """Whether the light is a vehicle's: `its red lights`, `the lights on the bus`, `a school bus with flashing red lights`."""
+    if any(word in ("its", "their", "his") for word in said[max(0, head - 3) : head]):
+        return True
+    after = said[head + 1 : head + 4]
+    if len(after) > 1 and after[0] in ("on", "of") and any(word in words.things for word in after[1:]):
+        return True
+    return "flashing" in said and any(word in words.things and at < head for at, word in enumerate(said[: head + 1]) if at >= head - 8 and said[at - 1] in ("school", "police"))
 
 
 def _shown(said: list[str], at: int, head: int, words: LightWords) -> Shown:
@@ -90,24 +108,36 @@ def _left(said: list[str], head: int, words: LightWords) -> Iterator[int]:
 
 
 def _right(said: list[str], head: int, following: int, words: LightWords) -> Iterator[int]:
-    """Colours said of the head after it: `the light ahead is red`, `lights, currently displaying red signals`."""
-    linked = False
+    """Colours said of the head after it: `the light ahead is red`, `lights, currently displaying red signals`; of a change the last."""
+    linked = changing = astray = False
     found: list[int] = []
     for at in range(head + 1, min(len(said), head + 1 + _FORWARD)):
         word = said[at]
         if word in ";!?":
             break
         if word in words.colors:
-            if at > head + 1 and not linked and said[at - 1] not in (":", ",", "(", "-"):
+            if (at > head + 1 and not linked and said[at - 1] not in (":", ",", "(", "-")) or _colors_another(said, at, words):
                 break
-            if _colors_another(said, at, words):
+            if astray and not changing:
                 break
+            if changing:
+                found.clear()
             found.append(at)
+            changing = astray = False
+        elif word in _CHANGES and found:
+            changing = True
         elif word in LINKS:
             linked = True
-        elif (at >= following and word in words.heads | words.arrows and not found) or (found and word not in FILLERS and word not in ("and", "or", ",", "to", "then", "/", "from", "not", "but", "turn", "turning", "turned", "before", "change", "changed")):
+        elif at >= following and (word in words.heads or word in words.arrows) and not found:
             break
+        elif found and word not in FILLERS and word not in _BETWEEN:
+            astray = True
     yield from found
+
+
+_CHANGES = word_set("now then to turned turn turning changed change became before but")
+"""Between two colours of one light: the last is what it shows."""
+_BETWEEN = frozenset(("and", "or", ",", "/", "have", "it", "light", "signal"))
 
 
 def _colors_another(said: list[str], at: int, words: LightWords) -> bool:
@@ -117,22 +147,21 @@ def _colors_another(said: list[str], at: int, words: LightWords) -> bool:
     word = said[at + 1]
     if word in BREAKS or word in LINKS or word in FILLERS or word in words.heads or word in words.arrows or word in words.colors:
         return False
-    return word in THINGS
-
-
-THINGS = frozenset(
-    ["car", "truck", "van", "bus", "sedan", "suv", "vehicle", "sign", "building", "shirt", "jacket", "tree", "curb", "cone", "barrier", "line", "bicycle", "motorcycle", "taxi", "umbrella", "roof", "wall", "bag", "hat", "sport", "brick", "flag", "banner", "coat", "dress", "pickup", "trailer"]
-)
-"""Things whose colour is not a light's."""
+    return word in words.things
 
 
 ACTS = frozenset(("pedestrian.on_roadway", "pedestrian.in_crosswalk"))
 PLACES_CROSSED = frozenset(("crosswalk.present", "sign.pedestrian_crossing"))
 """What `crossing` can mean beside a person: what the person does, or where."""
-_OBJECTS = frozenset("the a an this that our its my another in at from slowly quickly street road highway intersection lane outside without between { [ avenue main both one two 1 2 east west north south".split())
-_NOUN_BEFORE = frozenset("the a an this that marked zebra railroad railway level grade designated school nearest raised signalized unsignalized painted at grade train".split())
-_UNREAL = frozenset("to can may will should must could would might and".split())
-_STARTED = frozenset("start started starting begin began beginning begun seen continue".split())
+_OBJECTS = word_set(
+    """the a an this that our its my another in at from slowly quickly street road highway intersection lane outside without between { [ avenue
+    main both one two 1 2 east west north south"""
+)
+_NOUN_BEFORE = word_set(
+    """the a an this that marked zebra railroad railway level grade designated school nearest raised signalized unsignalized painted at train"""
+)
+_UNREAL = word_set("to can may will should must could would might and")
+_STARTED = word_set("start started starting begin began beginning begun seen continue")
 
 
 def crossing_is_act(said: list[str], raw: str, at: int) -> bool:

@@ -6,9 +6,10 @@ import re
 from dataclasses import dataclass
 
 from regdb_runtime.perception.normalise import Normalised
+from regdb_runtime.perception.word_set import word_set
 
 _TOKEN = re.compile(r"km/h|mi/h|[^\W\d_]+(?:'[^\W\d_]+)?|\d+(?:[.,]\d+)*|[.,;:!?()\[\]\n\"/&%+]|(?<!\w)'|'(?!\w)|(?<=\s)-+(?=\s)")
-_ABBREVIATED = frozenset(["st", "ave", "blvd", "rd", "dr", "mr", "mrs", "ms", "approx", "etc", "e.g", "i.e", "eg", "ie", "vs", "hwy", "dept", "jr", "sr", "inc", "ft", "no"])
+_ABBREVIATED = word_set("st ave blvd rd dr mr mrs ms approx etc e.g i.e eg ie vs hwy dept jr sr inc ft no")
 _STOPS = frozenset(".!?\n")
 
 _ONES = {word: n for n, word in enumerate(

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 from regdb_runtime.perception.lexicon import FILLERS, Lexicon
 from regdb_runtime.perception.sentences import Sentence
+from regdb_runtime.perception.word_set import word_set
 
 FACTS = {"limit": "posted.speed", "minimum": "posted.minimum_speed", "advisory": "posted.advisory_speed", "truck": "posted.truck_speed"}
 """Kind -> fact; other kinds (actual speeds, distances, times) say nothing of signs."""
@@ -64,8 +65,10 @@ def speeds(sentence: Sentence, words: SpeedWords) -> Iterator[Speed]:
         before = at
 
 
-_ALLOWED = frozenset("allowed permitted permissible legal allowable".split())
-_COUNTED = frozenset("lane car vehicle pedestrian person people hour am pm a.m p.m way second minute foot day sign light cyclist degree".split())
+_ALLOWED = word_set("allowed permitted permissible legal allowable")
+_COUNTED = word_set(
+    """lane car vehicle pedestrian person people hour am pm a.m p.m way second minute foot day sign light cyclist degree"""
+)
 
 
 def _right(said: list[str], at: int, words: SpeedWords) -> Speed | None:
