@@ -146,21 +146,26 @@ def _permitted_number(fact: Fact, policy: FusionPolicy, said: Sequence[Held]) ->
 def _confirming(fact: Fact, policy: FusionPolicy, said: Sequence[Held], value: Value) -> list[Held]:
     """Statements that make a value known beyond the first: enough of them, apart, near in time; empty when they do not.
 
-    Where corroboration is declared, enough of the corroborating sources and enough of the others. A number is confirmed by every number that permits at least as much.
+    Where corroboration is declared, enough of the corroborating sources and enough of the others. A number is confirmed by every
+    number that permits at least as much.
     """
     least = _strictness_of(fact, policy, value)
     same = [item for item in said if item.statement.value == value or (fact.is_numeric and _strictness(fact, policy, item) < least)]
+    asked = not policy.asks or value is not True or any(item.statement.rule == CHOICE or item.statement.source in EXACT for item in same)
+    return _proof(policy, same, alone=restricts(policy, value)) if asked else []
+
+
+def _proof(policy: FusionPolicy, same: Sequence[Held], *, alone: bool = False) -> list[Held]:
+    """Those of statements that agree which make it known; empty when they are too few, or `alone` is not enough and nobody corroborates."""
     exact = [item for item in same if item.statement.source in EXACT and (not policy.corroboration or item.statement.source in policy.corroboration)]
     if exact:
         return exact
-    proof = _spaced(policy, same)
-    if len(proof) < policy.confirmations or (policy.asks and value is True and all(item.statement.rule != CHOICE for item in same)):
-        return []
-    if policy.corroboration and not restricts(policy, value):
-        beside = _spaced(policy, [item for item in same if item.statement.source in policy.corroboration])
-        others = _spaced(policy, [item for item in same if item.statement.source not in policy.corroboration])
-        return [*others, *beside] if min(len(others), len(beside)) >= policy.confirmations else []
-    return proof
+    if alone or not policy.corroboration:
+        found = _spaced(policy, same)
+        return found if len(found) >= policy.confirmations else []
+    beside = _spaced(policy, [item for item in same if item.statement.source in policy.corroboration])
+    others = _spaced(policy, [item for item in same if item.statement.source not in policy.corroboration])
+    return [*others, *beside] if min(len(others), len(beside)) >= policy.confirmations else []
 
 
 def _spaced(policy: FusionPolicy, items: Iterable[Held]) -> list[Held]:
@@ -184,16 +189,12 @@ def _believe_set(fact: Fact, policy: FusionPolicy, live: Sequence[Held]) -> Beli
         naming = [item for item in said if isinstance(item.statement.value, frozenset) and word in item.statement.value]
         if naming and word not in policy.permissive:
             words[word] = naming
-        elif len(proof := _spaced(policy, naming)) >= policy.confirmations or _exact(naming):
+        elif proof := _proof(policy, naming):
             words[word] = proof
     if words:
         return _belief(frozenset(words), [item for naming in words.values() for item in naming])
-    empty = _spaced(policy, [item for item in said if not item.statement.value])
-    return _belief(frozenset(), empty) if len(empty) >= policy.confirmations and len(_values(said)) == 1 else None
-
-
-def _exact(items: Sequence[Held]) -> bool:
-    return any(item.statement.source in EXACT for item in items)
+    empty = _proof(policy, [item for item in said if not item.statement.value])
+    return _belief(frozenset(), empty) if empty and len(_values(said)) == 1 else None
 
 
 def _strictness(fact: Fact, policy: FusionPolicy, item: Held) -> float:
