@@ -16,6 +16,8 @@ from numpy.typing import NDArray
 from regdb_runtime.maps.road_map import Lane, RoadMap, Zone
 
 Floats = NDArray[np.float64]
+SLACK = 1e-6
+"""Metres: a limit line drawn exactly through a point of the route, as at the end of a lane, is crossed there."""
 _JOIN = 0.5
 """Metres under which the end of one lane and the beginning of the next are one point."""
 
@@ -74,10 +76,10 @@ class Downtrack:
         length = math.dist(start, end) or 1.0
         unit = (end[0] - start[0]) / length, (end[1] - start[1]) / length
         longer = (start[0] - reach * unit[0], start[1] - reach * unit[1]), (end[0] + reach * unit[0], end[1] + reach * unit[1])
-        return next(iter(self._crossings(*longer)), None)
+        return next(iter(self._crossings(*longer, slack=SLACK)), None)
 
-    def _crossings(self, start: tuple[float, float], end: tuple[float, float]) -> list[float]:
-        """Stations at which the route crosses a segment, in order."""
+    def _crossings(self, start: tuple[float, float], end: tuple[float, float], slack: float = 0.0) -> list[float]:
+        """Stations at which the route crosses a segment, in order; with `slack` also where rounding puts the crossing between two of its pieces."""
         (ax, ay), (bx, by) = start, end
         across = np.array((bx - ax, by - ay))
         relative = np.array((ax, ay)) - self.points[:-1]
@@ -85,7 +87,7 @@ class Downtrack:
         with np.errstate(divide="ignore", invalid="ignore"):
             along = (relative[:, 0] * across[1] - relative[:, 1] * across[0]) / bottom
             part = (relative[:, 0] * self._directions[:, 1] - relative[:, 1] * self._directions[:, 0]) / bottom
-        hit = (np.abs(bottom) > 1e-9) & (along >= 0) & (along <= self._steps) & (part >= 0) & (part <= 1)
+        hit = (np.abs(bottom) > 1e-9) & (along >= -slack) & (along <= self._steps + slack) & (part >= 0) & (part <= 1)
         return [float(self.stations[i] + along[i]) for i in np.flatnonzero(hit)]
 
     def within(self, zone: Zone) -> tuple[Span, ...]:
