@@ -17,7 +17,10 @@ Locate = Callable[[Frame, str], Box | None]
 class AsksPrompts(Protocol):
     """Whatever makes prompts: a PromptMaker."""
 
-    def prompt(self, state_id: str, missing: tuple[str, ...] = (), history: tuple[tuple[str, str], ...] = ()) -> Prompt | None: ...
+    def prompt(
+        self, state_id: str, missing: tuple[str, ...] = (), history: tuple[tuple[str, str], ...] = (), relevant: frozenset[str] | None = None,
+        turn: int = 0,
+    ) -> Prompt | None: ...  # fmt: skip
 
 
 @dataclass(frozen=True)
@@ -119,7 +122,7 @@ class LoopCore:
         if now - frame.captured > self.settings.oldest_frame:
             self._change(skipped=self.health.skipped + 1)
             return None
-        prompt = self.prompts.prompt(attention.state, attention.missing, tuple(self._history))
+        prompt = self.prompts.prompt(attention.state, attention.missing, tuple(self._history), attention.relevant, self.health.calls)
         self._change(asking=prompt is not None)
         if prompt is None:
             return None
