@@ -66,7 +66,7 @@ class FrameCamera:
         """What the scripted eye knows, less the signs that cannot be read in this frame: of those nothing can be told."""
         facts, _ = self._eye.look(self._world.time, self._world.ego)
         legible = {truth.fact for truth in rendering.truths if truth.area >= LEAST_AREA and truth.hidden <= MOST_HIDDEN}
-        codes = {sign.code for sign in (*self._signs, *self._world.road_map.signs.values())}
+        codes = {sign.code for sign in self._signs} | {sign.code for sign in self._world.road_map.signs.values()}
         drawn = {fact for fact, code in self._codes.items() if fact.startswith("sign.") and code in codes}
         return {name: value for name, value in facts.items() if value is not True or name not in drawn or name in legible}
 

@@ -9,11 +9,12 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
+from typing import Protocol
 
 from regdb.vocabulary import Value, Vocabulary
 from regdb_runtime.database import RegulationDatabase
 from regdb_runtime.decision import Decision
-from regdb_runtime.drive.frame_camera import FrameCamera
+from regdb_runtime.drive.frame_camera import Shot
 from regdb_runtime.legality import View
 from regdb_runtime.observation import EgoState, Observation, Provenance
 from regdb_runtime.perception.answer_reading import ReadsText, read_answer
@@ -49,11 +50,17 @@ class Prompts:
         return self._makers[facts]
 
 
+class Camera(Protocol):
+    """Whatever takes frames of the drive."""
+
+    def take(self) -> Shot: ...
+
+
 @dataclass(frozen=True, eq=False)
 class Chain:
     """What stands between a frame and a fact."""
 
-    camera: FrameCamera
+    camera: Camera
     describer: Describer
     prompts: Prompts
     matcher: ReadsText
@@ -165,7 +172,7 @@ class _Places:
         return found
 
 
-def seeing(world: BuiltInWorld, database: RegulationDatabase, describer: Describer, camera: FrameCamera, matcher: ReadsText) -> FramesEye:
+def seeing(world: BuiltInWorld, database: RegulationDatabase, describer: Describer, camera: Camera, matcher: ReadsText) -> FramesEye:
     """The eye of a world whose questions follow the law of its place and day."""
     vocabulary = database.vocabulary
     view = database.at(world.road_map.jurisdiction or "california", world.spec.start[:10])
