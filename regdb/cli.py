@@ -42,6 +42,7 @@ COMMANDS: dict[str, Command] = {
     "schema": Command("regdb_compiler.commands.schema", "compiler", "Print or write the JSON Schema of the file formats."),
     "check": Command("regdb_runtime.commands.check", "", "Ask whether a manoeuvre is lawful in a scene."),
     "explain": Command("regdb_runtime.commands.explain", "", "Say why a verdict is as it is, and what would turn it."),
+    "match": Command("regdb_runtime.commands.match", "", "Say which facts a text about a driving scene states, and by which words."),
     "drive": Command("regdb_runtime.commands.drive", "", "Drive the paper's experiment and its variants by the law in the database."),
     "doctor": Command("regdb.doctor", "", "Report what is installed, which codes are found, and what is missing."),
     "demo": Command("regdb.demo", "compiler", "Lint, test, compile, decide the paper's situations and drive its experiment."),

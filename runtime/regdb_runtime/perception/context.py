@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 
-from regdb_runtime.perception.cues import ASKING, CUES, DEFINITE, NOT_PAST, POINTING, HEARTS, NO_DENIAL, OPENERS, PLACES, TAKES_OBJECT
+from regdb_runtime.perception.cues import ASKING, CUES, DEFINITE, NOT_PAST, POINTING, HEARTS, NO_DENIAL, OPENERS, PLACES, TAKES_OBJECT, WEAK_ADVICE
 from regdb_runtime.perception.lexicon import FILLERS
 from regdb_runtime.perception.sentences import Sentence, tokens
 from regdb_runtime.perception.word_set import word_set
@@ -220,6 +220,7 @@ def _said_after(context: Context, cue: Cue, last_of: list[tuple[int, int]], brea
             reached = first
 
 
+_LIGHTS = word_set("light signal red green yellow amber arrow")
 _ABOUT_IT = word_set("status state color phase gesture legend text speed side end")
 """`The status of the light is not visible` denies no light."""
 
@@ -274,23 +275,30 @@ def _ended(context: Context, cue: Cue) -> None:
 
 def _advice(context: Context, cue: Cue) -> None:
     said = context.said
-    before = cue.first - 1
-    led = before < 0 or said[before] in (",", ":", "-", "and", ";", "then", "or") or said[cue.first].endswith("ing")
-    if not led:
-        led = any(other.kind == "modal" and other.last < cue.first and cue.first - other.last <= 6 for other in context.cues)
+    if " ".join(said[cue.first : cue.last + 1]) in WEAK_ADVICE:
+        before = cue.first - 1
+        led = before < 0 or said[before] in (",", ":", "-", "and", ";", "then", "or", "but", "please", "always")
+        led = led or any(other.kind == "modal" and other.last < cue.first and cue.first - other.last <= 6 for other in context.cues)
+        if not led:
+            return
     start = max((at + 1 for at in range(cue.first) if said[at] in _STRONG or said[at] == ","), default=0)
     if any(is_past(word) for word in said[start : cue.first]):
         return
-    if led:
-        _until_comma(context, cue, context.soft, "advice", commas=True)
+    _until_comma(context, cue, context.soft, "advice", commas=True)
 
 
 def _other(context: Context, cue: Cue) -> None:
     """`oncoming traffic has a green light`, `the light for the cross street is red`: no light of ours."""
     said = context.said
-    before = [word for word in said[max(0, cue.first - 3) : cue.first] if word not in FILLERS]
-    if before and before[-1] in ("for", "facing") or cue.first and said[cue.first - 1] == "for":
-        for at in range(max(0, cue.first - 7), cue.last + 1):
+    link = next((at for at in range(cue.first - 1, max(-1, cue.first - 4), -1) if said[at] == "for"), -1)
+    if link > 0 and said[link - 1] in _LIGHTS:
+        for at in range(link, max(-1, link - 8), -1):
+            if said[at] in _STRONG or said[at] in (",", "but"):
+                break
+            context.colors_aside.setdefault(at, "other road user")
+        for at in range(link, min(len(said), cue.last + 6)):
+            if said[at] in _STRONG or said[at] in (",", "but"):
+                break
             context.colors_aside.setdefault(at, "other road user")
     if any(word in ("have", "face", "facing", "get", "see", "given") for word in said[cue.last + 1 : cue.last + 4]):
         for at in range(cue.last + 1, min(len(said), cue.last + 9)):

@@ -97,3 +97,9 @@ NOT_PAST = word_set(
     permitted prohibited used located marked signalized designated dedicated divided parked posted colored limited restricted controlled"""
 )
 """Words in -ed that tell no story."""
+
+WEAK_ADVICE = frozenset((
+    "yield to", "yielding to", "give way to", "stop for", "yield for", "slow down for", "avoid", "avoiding", "monitor", "monitoring", "observe",
+    "respond to", "react to", "obey", "respect", "account for", "priority to", "consider", "attention to", "ensure", "anticipate",
+))  # fmt: skip
+"""Advice only as an order or with a modal: `the car yields to pedestrians` says that they are there."""

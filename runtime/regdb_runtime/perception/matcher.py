@@ -198,16 +198,14 @@ class _SentenceReader:
     def spans(self, mask: int) -> tuple[Span, ...]:
         """The words at these tokens, neighbouring ones joined."""
         made: list[Span] = []
-        first = -1
-        at = 0
-        while mask >> at:
+        first = last = (mask & -mask).bit_length() - 1
+        for at in range(first + 1, mask.bit_length()):
             if mask >> at & 1:
-                first = at if first < 0 else first
-            elif first >= 0 and self.sentence.words[at] not in FILLERS:
-                made.append(self._place(first, at - 1))
-                first = -1
-            at += 1
-        made.append(self._place(first, mask.bit_length() - 1))
+                if any(word not in FILLERS for word in self.sentence.words[last + 1 : at]):
+                    made.append(self._place(first, last))
+                    first = at
+                last = at
+        made.append(self._place(first, last))
         return tuple(made)
 
     def span(self, mask: int) -> Span:
