@@ -174,6 +174,17 @@ def test_following_is_unsafe_by_the_interpretation_in_use() -> None:
     assert growing["lead.following_unsafe"] is False, "a gap that was too small from the first and grows"
 
 
+def test_who_only_the_scene_tells_of_is_followed_too() -> None:
+    """A vehicle too far ahead for the strategist to follow, not for the law: its distance and speed are roles of the scene."""
+    roles: dict[str, Value] = {"lead.present": True, "lead.distance": 25.0, "lead.speed": 10.0}
+    here = stretch(60.0 + FOOTPRINT.front, 1e9, POSTED, roles)
+    assert facts(motion(10.0), stretches=(here,), profile="conservative")["lead.following_unsafe"] is True
+    roles["lead.distance"] = 90.0
+    told = facts(motion(12.0), stretches=(here,), profile="conservative")
+    assert told["lead.following_unsafe"] is False
+    assert told["plan.following_distance"] == pytest.approx(80.0)
+
+
 def test_speed_for_conditions_is_stopping_in_sight() -> None:
     near = stretch(60.0 + FOOTPRINT.front, 1e9, POSTED, measures={"speed.unsafe_for_conditions": {"sight_distance": 30.0}})
     assert facts(motion(10.0), stretches=(near,), profile="conservative")["speed.unsafe_for_conditions"] is True, "25 m + 14.7 m"

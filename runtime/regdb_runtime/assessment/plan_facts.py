@@ -91,7 +91,7 @@ def measure(what: Measuring, candidates: Candidates, rows: NDArray[np.intp]) -> 
         driven_over.measure(columns, what.sections, plans, candidates, rows, what.maneuver, settings)
     step = float(candidates.time[1] - candidates.time[0])
     passing.measure(columns, what.passing, plans, speed, step)
-    _following(columns, what, plans, speed, step)
+    _following(columns, what, plans, speed, candidates.time)
     reached, of_stretch = _by_stretch(what, plans, speed)
     borders = tuple((stretch.start, stretch.end) for stretch in what.stretches)
     return PlanFacts(what.shared, columns, of_stretch, reached, len(rows), speed, plans.front, borders)
@@ -112,14 +112,20 @@ def _least_clearance(maneuver: Maneuver, stretches: Sequence[Stretch]) -> float:
     return max(bounds, default=0.0)
 
 
-def _following(columns: dict[str, Column], what: Measuring, plans: Extents, speed: Floats, step: float) -> None:
-    if what.lead is None:
-        return
-    gap = others.gap_behind(plans, what.lead)
+def _following(columns: dict[str, Column], what: Measuring, plans: Extents, speed: Floats, time: Floats) -> None:
+    """The distance kept to who drives ahead: the manoeuvre's lead by its prediction, else whom the scene tells of, at his present speed."""
+    if what.lead is not None:
+        gap, ahead = others.gap_behind(plans, what.lead), what.lead.along
+    else:
+        roles = what.stretches[0].roles
+        distance, pace = roles.get("lead.distance"), roles.get("lead.speed")
+        if roles.get("lead.present") is not True or not isinstance(distance, float) or not isinstance(pace, float):
+            return
+        gap, ahead = distance + pace * time - (plans.front - plans.front[:, :1]), np.full(time.shape, pace)
     columns["plan.following_distance"] = number(np.maximum(gap.min(axis=1), 0.0), what.settings.decimals)
     decision = judged_facts.decided_by(what.profile, "lead.following_unsafe")
     if decision is not None:
-        column = judged_facts.following_unsafe(decision, gap, speed, what.lead.along, step, what.settings)
+        column = judged_facts.following_unsafe(decision, gap, speed, ahead, float(time[1] - time[0]), what.settings)
         if column is not None:
             columns["lead.following_unsafe"] = column
 
