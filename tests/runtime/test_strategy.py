@@ -220,6 +220,15 @@ class TestOvertaking:
         assert found[f"{OT}.prepare_lane_change_left"] == "no_lane"
         assert found[f"{OT}.go_straight"] == ""
 
+    def test_nobody_passes_what_moves_on_the_half_of_oncoming_traffic(self):
+        plans = strategist(straight(1))
+        slow = replace(car("slow", 100.0, 5.0), y=center(1, lanes=1))
+        assert offers(plans, seen(ego(50.0, lanes=1), slow))[f"{OT}.go_straight"] == "no_room_beside"
+        rider = build(plans, seen(ego(50.0, lanes=1), cyclist(100.0, lanes=1)), f"{OT}.go_straight").goal
+        assert max(rider.offsets) == pytest.approx(1.75 - 0.9 - 0.02)
+        standing = replace(slow, speed=0.0)
+        assert max(build(plans, seen(ego(50.0, lanes=1), standing), f"{OT}.go_straight").goal.offsets) > 2.0
+
     def test_nobody_overtakes_what_is_about_as_fast(self, road):
         assert offers(strategist(road), seen(ego(50.0), car("lead", 90.0, 13.0)))[f"{OT}.go_straight"] == "nothing_slow"
 

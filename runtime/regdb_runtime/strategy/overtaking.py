@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import replace
 
 from regdb_runtime.maneuver import Maneuver
@@ -11,6 +12,9 @@ from regdb_runtime.strategy.machine import Step
 from regdb_runtime.strategy.memory import Pass
 from regdb_runtime.strategy.picture import Picture, follow
 from regdb_runtime.strategy.surroundings import Placed
+
+STANDS = 0.5
+"""m/s under which what is passed counts as standing."""
 
 
 def wanted(picture: Picture) -> tuple[Placed | None, str]:
@@ -129,11 +133,16 @@ def begun(picture: Picture, maneuver: Maneuver) -> Pass | None:
 
 
 def _in_lane(picture: Picture, step: Step, slow: Placed) -> Maneuver:
-    """Offsets that leave each of the clearances aimed at, and the widest that stays in lane; nobody else in that strip may be slow."""
+    """Offsets that leave each of the clearances aimed at, and the widest that stays in lane.
+
+    Beyond the lane only beside a lane that goes the same way, or round what stands: nobody passes what moves on the half of oncoming traffic,
+    since the end of such a pass cannot be seen from its beginning. Whether any of them is lawful, the law says.
+    """
     settings, half = picture.settings, picture.footprint.width / 2
     bound = float(picture.here.widths.min()) / 2 - half - settings.edge_margin
     aims = [slow.left + half + clearance + settings.aim_beyond for clearance in settings.pass_clearances]
-    offsets = sorted({round(item, 3) for item in (*aims, bound) if item > slow.left + half and item > 0.0})
+    leaves = slow.along < STANDS or picture.beside("left") is not None
+    offsets = sorted({round(item, 3) for item in (*aims, bound) if item > slow.left + half and 0.0 < item <= (math.inf if leaves else bound)})
     if not offsets and slow.left + half < 0.0:
         offsets = [0.0]
     if not offsets:
