@@ -160,7 +160,7 @@ def _plot(outcomes: Sequence[Outcome], path: Path) -> None:
         from matplotlib.figure import Figure
     except ModuleNotFoundError as error:
         raise MissingExtra("matplotlib", "plots", "the plot") from error
-    style = {"font.size": 10, "axes.spines.top": False, "axes.spines.right": False, "axes.grid": True, "grid.color": "#e3e3e3"}
+    style: Any = {"font.size": 10, "axes.spines.top": False, "axes.spines.right": False, "axes.grid": True, "grid.color": "#e3e3e3"}
     with library.rc_context(style):
         figure = Figure(figsize=(9.0, 6.4), layout="constrained")
         upper, lower = figure.subplots(2, 1, sharex=True)
