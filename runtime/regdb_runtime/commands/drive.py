@@ -30,16 +30,16 @@ from regdb_runtime.drive.variants import VARIANTS, Variant, variant
 from regdb_runtime.errors import MissingExtra, RegdbRuntimeError
 from regdb_runtime.worlds.scene_spec import SceneSpec
 
-EYES = ("scripted", "recorded", "none")
+EYES = ("scripted", "recorded", "none", "frames")
 
 
 def command(
-    what: Annotated[str, typer.Argument(help="paper, list, replay, observe, or recorded.")],
+    what: Annotated[str, typer.Argument(help="paper, list, replay, observe, recorded, frames, or degradation.")],
     file: Annotated[Path | None, typer.Argument(help="replay: a scene (JSON) or a log (JSONL). observe, recorded: CommonRoad traffic (XML).")] = None,
     out: Annotated[Path | None, typer.Option("-o", "--out", help="Where logs, figures and the table go; default: out/drive.")] = None,
     names: Annotated[list[str] | None, typer.Option("--variant", help="A variant's name, or all; repeatable.")] = None,
     world: Annotated[str, typer.Option(help="built-in or sumo.")] = "built-in",
-    eye: Annotated[str, typer.Option(help="What tells facts of perception: scripted, recorded or none.")] = "",
+    eye: Annotated[str, typer.Option(help="What tells facts of perception: scripted, recorded, none, or frames.")] = "",
     record: Annotated[Path | None, typer.Option(help="recorded: its file (JSONL); default: made from a scripted drive.")] = None,
     profile: Annotated[str, typer.Option(help="What plans are weighed by: default, or the paper's terms.")] = "default",
     seed: Annotated[int | None, typer.Option(help="Seed of the other traffic.")] = None,
@@ -51,6 +51,9 @@ def command(
     route: Annotated[str, typer.Option(help="recorded: lanes from start to end, with commas.")] = "",
     lights: Annotated[str, typer.Option(help="recorded: what lights show, red or green first, nominal or none.")] = "red",
     interpretation: Annotated[str, typer.Option(help="observe: profile for what the law leaves to judgement.")] = "",
+    error_rate: Annotated[
+        float | None, typer.Option(min=0.0, max=1.0, help="frames, degradation: share of the model's answers that are wrong.")
+    ] = None,
     format_: Annotated[str, typer.Option("--format", help="text or json.")] = "text",
 ) -> None:
     """Drive the paper's experiment by the law in the database, or observe recorded traffic."""
@@ -64,7 +67,7 @@ def command(
         raise FrontError(f"--eye is {', '.join(EYES[:-1])} or {EYES[-1]}")
     options = Options(
         out, tuple(names or ("paper",)), world, eye, record, profile, seed, db, figures, format_, tuple(vehicles or ()), place, on, route, lights,
-        interpretation,
+        interpretation, error_rate,
     )
     try:
         code = way(file, options)
@@ -88,12 +91,23 @@ def _drive_variant(item: Variant, options: Options) -> Row:
     scene = item.scene if options.seed is None else replace(item.scene, seed=options.seed)
     spec = scene_spec(scene, item.name)
     folder = options.folder / item.name
+    if options.eye == "frames":
+        return _drive_by_frames(item, spec, law, folder, options)
     if options.eye:
         spec = with_eye(spec, options.eye, _record_for(item.name, spec, law, folder, options))  # type: ignore[arg-type]  # checked by `command`
     log = _driven(item.name, spec, law, Choices(options.world, options.profile))
     _write(log, spec, law, folder, options)
     blinded = spec.eye.kind == "none" != item.scene.eye
     return row_of(log, None if blinded else item)
+
+
+def _drive_by_frames(item: Variant, spec: SceneSpec, law: RegulationDatabase, folder: Path, options: Options) -> Row:
+    """One variant by what a model says of rendered frames; what it must do is expected of one that errs not."""
+    from regdb_runtime.commands.drive_frames import by_frames
+
+    log = by_frames(item.name, spec, law, options)
+    _write(log, spec, law, folder, options)
+    return row_of(log, None if options.error_rate else item)
 
 
 def _record_for(name: str, spec: SceneSpec, law: RegulationDatabase, folder: Path, options: Options) -> str:
@@ -173,8 +187,23 @@ def _recorded(file: Path | None, options: Options) -> int:
     return drive_file(file, options)
 
 
+def _frames(file: Path | None, options: Options) -> int:
+    """Write what the camera sees."""
+    from regdb_runtime.commands.drive_frames import frames_run
+
+    return frames_run(file, options)
+
+
+def _degradation(file: Path | None, options: Options) -> int:
+    """Drive by a model that errs."""
+    from regdb_runtime.commands.drive_frames import degradation_run
+
+    return degradation_run(file, options)
+
+
 WAYS: Mapping[str, Callable[[Path | None, Options], int]] = {
-    "paper": _paper, "list": _list, "replay": _replay, "observe": _observe, "recorded": _recorded,
+    "paper": _paper, "list": _list, "replay": _replay, "observe": _observe, "recorded": _recorded, "frames": _frames,
+    "degradation": _degradation,
 }  # fmt: skip
 """First word -> what it does; returns the exit code."""
 

@@ -26,6 +26,7 @@ class Options:
     route: str = ""
     lights: str = "red"
     interpretation: str = ""
+    error_rate: float | None = None
 
     @property
     def folder(self) -> Path:
