@@ -116,7 +116,7 @@ def draw(log: Log, sheet: Sheet, marked: Sequence[Event], scenes: Scenes | None 
     _labels(above, marked)
     above.set_title(f"{sheet.title}: {_place(log)}", loc="left", fontsize=10, color=INK)
     above.tick_params(labelbottom=False)
-    below.set_xlabel(f"time, s   (perception: {log.run['provenance']}; world: {log.run['world']})", fontsize=8.5, color=INK)
+    below.set_xlabel(f"time, s   (perception: {log.run['provenance']}; world: {log.run['world']}{_lights(log)})", fontsize=8.5, color=INK)
     beside = columns[0, 1].subgridspec(len(shown), 1) if shown else None
     for row, name in enumerate(shown):
         assert beside is not None
@@ -126,6 +126,11 @@ def draw(log: Log, sheet: Sheet, marked: Sequence[Event], scenes: Scenes | None 
         said = _LABELS[name].replace("\n", " ")
         axes.set_title(f"{said}, {scenes.instants[name].observation.time:.1f} s", fontsize=8.5, loc="left", color=INK)
     return figure
+
+
+def _lights(log: Log) -> str:
+    """Where the lights' phases came from, for drives that say so."""
+    return f"; lights: {log.run['lights']}" if "lights" in log.run else ""
 
 
 def _place(log: Log) -> str:

@@ -13,7 +13,7 @@ import numpy as np
 from regdb_runtime.drive.events import events_of
 from regdb_runtime.drive.log import Log
 from regdb_runtime.drive.picture import Instant, PictureSettings, draw_scene
-from regdb_runtime.maps.road_map import RoadMap
+from regdb_runtime.maps.road_map import Floats, RoadMap
 from regdb_runtime.observation import EgoState, Footprint, Indication, Observation, Track
 from regdb_runtime.trajectory import Trajectory
 
@@ -22,6 +22,8 @@ WORDS = {
     "overtaking_begins": "Overtaking begins", "alongside": "Alongside", "back_in_lane": "Back in lane", "overtaking_given_up": "Overtaking given up",
     "stopped": "Full stop", "released": "Leaves the stop", "zone_detected": "Zone detected, braking begins", "reduced_speed": "Reduced speed reached",
 }  # fmt: skip
+STANDS = 0.05
+"""Metres from point to point of a plan below which it stands there and has no course."""
 VIEW = PictureSettings(along=70.0, across=44.0, pixels=1100)
 WIDE = PictureSettings(along=110.0, across=40.0, pixels=1100, ahead=40.0)
 """For what is far ahead as it begins: whom one overtakes, the zone one brakes for."""
@@ -69,6 +71,16 @@ def observation_of(tick: Record) -> Observation:
     return Observation(tick["time"], clock, EgoState(**ego), tracks, signals)
 
 
+def _courses(x: Floats, y: Floats) -> Floats:
+    """The course at each point of a plan; where it stands that of its nearest motion before, else after; none for a plan that stands all along."""
+    dx, dy = np.gradient(x), np.gradient(y)
+    moving = np.flatnonzero(np.hypot(dx, dy) > STANDS)
+    if not len(moving):
+        return np.full_like(x, math.nan)
+    nearest = moving[np.clip(np.searchsorted(moving, np.arange(len(x)), side="right") - 1, 0, None)]
+    return np.asarray(np.arctan2(dy[nearest], dx[nearest]))
+
+
 def _plan_at(log: Log, time: float) -> Trajectory | None:
     """The plan last decided on by strategy, as far as the log keeps it: its points in the plane."""
     plans = [tick["plan"] for tick in log.ticks if tick["plan"] is not None and time - 0.6 < tick["time"] <= time + 1e-6]
@@ -77,7 +89,7 @@ def _plan_at(log: Log, time: float) -> Trajectory | None:
     plan = plans[-1]
     held = {name: np.array(plan[name], dtype=float) for name in ("time", "x", "y", "speed", "station", "offset")}
     nothing = np.zeros_like(held["time"])
-    heading = np.arctan2(np.gradient(held["y"]), np.gradient(held["x"])) if len(held["x"]) > 1 else nothing + math.nan
+    heading = _courses(held["x"], held["y"]) if len(held["x"]) > 1 else nothing + math.nan
     return Trajectory(
         held["time"], held["x"], held["y"], heading, held["speed"], nothing, nothing, nothing, held["station"], held["offset"]
     )  # fmt: skip

@@ -13,7 +13,7 @@ WORST: dict[str, int] = {"legal": 0, "unknown": 1, "illegal": 2}
 @dataclass(frozen=True, slots=True)
 class Said:
     """What one rule says at one instant: `illegal` (broken) or `unknown` (may be). `measured` and `bound` in SI with `unit`, where it has a limit.
-    `force`: the kind of limit."""
+    `force`: the kind of limit. `at_line`: it speaks of crossing a line."""
 
     rule: str
     citation: str
@@ -24,6 +24,7 @@ class Said:
     unit: str = ""
     missing: tuple[str, ...] = ()
     force: str = ""
+    at_line: bool = False
 
     @property
     def beyond(self) -> float:

@@ -31,7 +31,7 @@ from regdb_runtime.drive.observed.matching import match
 from regdb_runtime.drive.observed.reading import Reader
 from regdb_runtime.drive.observed.unseen import BEYOND_LANES, SHAPE, STRADDLES, YIELDED, recorded_vehicle, unseen_facts, without
 from regdb_runtime.errors import RequestError
-from regdb_runtime.maneuver import Maneuver
+from regdb_runtime.maneuver import Junction, Maneuver
 from regdb_runtime.maps.lane_graph import LaneGraph
 from regdb_runtime.maps.lane_path import LanePath, LanePaths
 from regdb_runtime.maps.road_map import RoadMap
@@ -54,6 +54,8 @@ WAY_ON = "the way it took at the junction"
 """What is missing where the recording ends before the junction and the verdict depends on it."""
 WORDS: tuple[Word, Word, Word] = ("legal", "unknown", "illegal")
 """By rank."""
+ENTERS = frozenset(("plan.enters_intersection", "plan.enters_crosswalk", "plan.enters_rail_crossing"))
+"""Facts of one moment: that a line is crossed."""
 PLACE, SPEED = "its place, more exactly", "its speed, more exactly"
 """What is missing where the verdict turns within the error of the recording and its map."""
 
@@ -151,6 +153,7 @@ class _Watcher:
         self.history = self.scenes.history()
         self.state = ""
         self.first_seen: dict[str, float] = {}
+        self.pending: dict[str, Said] = {}
 
     def moment(self, row: int, until: int) -> Moment | None:
         """The verdict on the motion from a row to another; None where the vehicle is on no lane."""
@@ -178,8 +181,27 @@ class _Watcher:
             for item in self.scenes.stretches(observation, maneuver, self.history)
         ]
         driven = self._driven(maneuver.lane_path, row, until)
-        answers = [_worst(assessor.verdicts(maneuver, stretches, driven, predictions, doubted)) for assessor in self.assessors]
-        return _beyond_doubt(_agreed(answers, PLACE), self.observer.settings)
+        lenient, strict = (_worst(assessor.verdicts(maneuver, stretches, driven, predictions, doubted)) for assessor in self.assessors)
+        front = float(driven.station[0, 0]) + self.footprint.front, float(driven.station[0, -1]) + self.footprint.front
+        answer = self._crossed(strict, maneuver.junction, front) or _agreed((lenient, strict), PLACE)
+        return _beyond_doubt(answer, self.observer.settings)
+
+    def _crossed(self, strict: Answer, junction: Junction | None, front: tuple[float, float]) -> Answer | None:
+        """A line is entered in one moment by the strict reading of the place and in a later one by the lenient; by then it is certain.
+
+        Refuted, while still before the line, by a moment in which even the strict reading finds nothing: it stopped after all.
+        """
+        now = {item.rule: item for item in strict[1] if item.at_line} if strict[0] == "illegal" else {}
+        pending, self.pending = self.pending, {**self.pending, **now}
+        if junction is None or not pending:
+            return None
+        if front[0] <= junction.stop_station:
+            self.pending = now
+            return None
+        if front[1] <= junction.stop_station + self.observer.settings.place_error:
+            return None
+        self.pending = {}
+        return "illegal", tuple(pending.values())
 
     def _past_unseen(self, maneuver: Maneuver) -> frozenset[str]:
         """Facts of history about the time before the recording: whoever is first seen at the line may have stopped there, or come first."""
@@ -260,7 +282,8 @@ def _worst(answer: Sequence[tuple[Stretch, Verdict]]) -> Answer:
                 found = rejection(verdict, rule)
                 missing = verdict.judgement.missing((rule,)) if word == "unknown" else ()
                 because = in_words(rule, found)
-                now = Said(rule.id, rule.citation, word, because, found.measured, found.bound, found.unit, tuple(missing), rule.force)
+                at_line = not ENTERS.isdisjoint(rule.facts)
+                now = Said(rule.id, rule.citation, word, because, found.measured, found.bound, found.unit, tuple(missing), rule.force, at_line)
                 if rule.id not in said or now.beyond > said[rule.id].beyond:
                     said[rule.id] = now
     return word, tuple(said.values())

@@ -34,7 +34,7 @@ class About:
     notes: tuple[str, ...] = ()
 
 
-NOTES = (
+NOTES: tuple[str, ...] = (
     "light phases and turn signals are not in the recording: unknown",
     "a rule counts as broken only where it is for every place and speed within the errors of the recording and its map",
 )
@@ -47,7 +47,7 @@ def text(about: About, found: Sequence[Observed]) -> str:
         lines += _wrapped(f"- {note}", "", "  ")
     lines += ["", f"{'vehicle':<16}{'recorded, s':>14}{'LEGAL':>10}{'ILLEGAL':>10}{'UNKNOWN':>10}"]
     for item in found:
-        times = "".join(f"{item.seconds(word):>9.1f}s" for word in ("legal", "illegal", "unknown"))  # type: ignore[arg-type]  # words of findings
+        times = "".join(f"{item.seconds(word):>9.1f}s" for word in ("legal", "illegal", "unknown"))
         span = f"{item.start:.1f}-{item.end:.1f}"
         lines.append(f"{item.vehicle + ' ' + item.kind:<16}{span:>14}{times}{'  off the map' if item.unmatched else ''}")
         for broken in item.broken:
@@ -130,7 +130,7 @@ def data(about: About, found: Sequence[Observed]) -> dict[str, Any]:
 def _vehicle(item: Observed) -> dict[str, Any]:
     return {
         "id": item.vehicle, "kind": item.kind, "start": _time(item.start), "end": _time(item.end), "off_map": _time(item.unmatched),
-        "seconds": {word: _time(item.seconds(word)) for word in ("legal", "illegal", "unknown")},  # type: ignore[arg-type]  # words of findings
+        "seconds": {word: _time(item.seconds(word)) for word in ("legal", "illegal", "unknown")},
         "intervals": [
             {"verdict": part.word, "start": _time(part.start), "end": _time(part.end), "states": list(part.states)} for part in item.intervals
         ],
