@@ -145,11 +145,16 @@ class TestIntersections:
         assert stop.goal.stop.station == stop.junction.stop_station
         assert not stop.commits
 
-    def test_past_the_line_there_is_no_stop(self, signals):
+    def test_within_the_junction_a_stop_is_as_soon_as_is_gentle(self, signals):
         plans = strategist(signals, "right")
-        inside = offers(plans, seen(ego(2.0, 4.0)), f"{IH}.turn_right", handling=True)
-        assert inside[f"{IH}.stop"] == "past_line"
-        assert inside[f"{IH}.turn_right"] == ""
+        inside = build(plans, seen(ego(2.0, 4.0)), f"{IH}.stop", f"{IH}.turn_right", handling=True)
+        assert not inside.refused
+        assert 2.0 < inside.goal.stop.station - (302.0 + 3.85) < 5.0
+        assert offers(plans, seen(ego(2.0, 4.0)), f"{IH}.turn_right", handling=True)[f"{IH}.turn_right"] == ""
+
+    def test_between_line_and_entrance_the_stop_is_at_the_entrance(self, signals):
+        stop = build(strategist(signals, "right"), seen(ego(-8.0, 0.5)), f"{IH}.stop", f"{IH}.turn_right", handling=True)
+        assert stop.goal.stop.station == stop.junction.entrance
 
     def test_a_car_that_stands_before_the_line_is_waited_behind(self, signals):
         plans = strategist(signals, "right")

@@ -48,17 +48,17 @@ def car_following(picture: Picture, step: Step) -> Maneuver:
 
 
 def stop(picture: Picture, step: Step) -> Maneuver:
-    """Stop with the front bumper at the line, and stay; past the line, but short of the junction, there."""
+    """Stop with the front bumper at the line, and stay; past the line at the entrance, and within the junction as soon as is gentle: to wait
+    there for somebody is better than to cross his way."""
     junction = picture.junction
     if junction is None or not picture.handling:
         return refuse(picture, step, "no_junction")
-    if picture.front > junction.entrance - picture.settings.stop_margin and _inside(picture, junction):
-        return refuse(picture, step, "past_line")
     if picture.lead is not None and _waits_before(picture, junction):
         return refuse(picture, step, f"lead:{picture.lead.track.id}")
     point = stop_point(picture.memory.stop, junction, picture.front, picture.settings)
     if _inside(picture, junction):
-        point = replace(point, station=junction.entrance, margin=picture.settings.stop_margin)
+        needed = picture.speed * picture.speed / (2 * picture.settings.waiting_braking) + picture.settings.stop_margin
+        point = replace(point, station=max(junction.entrance, picture.front + needed), margin=0.0)
     goal = Goal((0.0,), picture.settings.cruise_speed, picture.curves, point, follow(picture.lead))
     return _maneuver(picture, step, goal, junction, commits=False)
 

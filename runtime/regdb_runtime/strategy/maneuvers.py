@@ -16,7 +16,7 @@ from regdb_runtime.strategy.memory import Memory
 from regdb_runtime.strategy.paths import Paths
 from regdb_runtime.strategy.picture import Picture
 from regdb_runtime.strategy.settings import StrategySettings
-from regdb_runtime.strategy.stop_line import NO_STOP, chosen, observe
+from regdb_runtime.strategy.stop_line import NO_STOP, StopMemory, chosen, observe
 
 BUILDERS: Mapping[str, Build] = {
     "lane_following.go_straight": lane_following.go_straight,
@@ -96,10 +96,17 @@ class Strategist:
             target_lane=maneuver.target_lane if changes else None,
             followed=maneuver.lead,
             passing=passing,
-            stop=chosen(memory.stop, maneuver.junction if picture.handling else None, name == "stop", maneuver.commits, time),
+            stop=self._stop(picture, name == "stop", maneuver.commits),
             handling=picture.handling,
             returning=state.startswith("overtaking.") or (memory.returning and abs(picture.offset) > self.settings.settled_offset),
         )
+
+    @staticmethod
+    def _stop(picture: Picture, stops: bool, enters: bool) -> StopMemory:
+        """The memory of the line after a choice; past the line there is nothing to remember but what was."""
+        if picture.inside:
+            return picture.memory.stop
+        return chosen(picture.memory.stop, picture.junction if picture.handling else None, stops, enters, picture.observation.time)
 
     def _looked(self, picture: Picture) -> Memory:
         """The memory after a look at place and speed alone."""
