@@ -49,10 +49,10 @@ class Belief:
         return replace(found, statements=tuple(replace(item, source="scripted") for item in found.statements))
 
     def snapshot(self, health: Health, settings: LoopSettings, now: float, attention: Attention) -> Snapshot:
-        """The fusion's snapshot, with why the loop calls perception degraded."""
+        """The fusion's snapshot; where the loop knows why perception is degraded, it says so."""
         found = self.fusion.snapshot(now, attention.travelled, attention.relevant)
         why = degraded(health, now, settings)
-        return replace(found, degraded="; ".join(part for part in (why, found.degraded) if part)) if why else found
+        return replace(found, degraded=why) if why else found
 
 
 class PerceptionLoop:
@@ -165,10 +165,10 @@ class PerceptionLoop:
             except Exception as error:  # noqa: BLE001  # an answer that breaks its reader is an answer that cannot be read
                 description = replace(description, text="", failure="malformed", detail=f"the answer cannot be read: {error}")
         now = self._clock()
-        self.last_answer = call, description
         if not description.failure:
             self._answers.append((reading, call.travelled, now))
         self._core.finished(description, now)
+        self.last_answer = call, description
 
     def _describe(self, call: Call) -> Description:
         try:
