@@ -11,6 +11,7 @@ from regdb_runtime.drive.expected import shortfalls
 from regdb_runtime.drive.log import line_of
 from regdb_runtime.drive.measures import measure, super_states
 from regdb_runtime.drive.paper_scene import scene_spec
+from regdb_runtime.drive.prepare import eye_of
 from regdb_runtime.drive.variants import VARIANTS, Variant, variant
 from regdb_runtime.maps.road_map import StopLine
 from watched_drives import Instant, Witnessed, bumper, gap, inside, law, witness, witnessed
@@ -146,7 +147,8 @@ def test_the_zones_speed_is_reached_by_its_boundary_without_abrupt_change(paper:
 def test_every_drive_says_where_its_perception_came_from(paper: Witnessed) -> None:
     assert paper.log.run["provenance"] == "scripted"
     assert witnessed("no-eye").log.run["provenance"] == "none"
-    assert all(not tick["facts"] for tick in witnessed("no-eye").log.ticks)
+    assert not any(facts for _, facts, _ in eye_of(witnessed("no-eye").log))
+    assert any(facts.get("school.children_going") for _, facts, _ in eye_of(paper.log))
 
 
 def test_the_same_scene_gives_the_same_bytes() -> None:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import closing
 from dataclasses import asdict, dataclass, field, replace
 from pathlib import Path
@@ -87,15 +87,24 @@ def eye_record(log: Log, vocabulary: Vocabulary) -> Iterator[str]:
     """
     own, next_look = eye_facts(vocabulary), 0.0
     assumed = {name: fact.assumption.value for name in sorted(own) if (fact := vocabulary.fact(name)).assumption is not None}
-    for tick in log.ticks:
+    for tick, seen, silent in eye_of(log):
         if tick["time"] >= next_look - 1e-6:
-            unheard = set(tick["silent"])
-            told = {name: value for name, value in assumed.items() if name not in unheard} | {
-                name: frozenset(value) if isinstance(value, list) else value for name, value in tick["facts"].items()
+            told = {name: value for name, value in assumed.items() if name not in silent} | {
+                name: frozenset(value) if isinstance(value, list) else value for name, value in seen.items()
             }
             facts = {name: vocabulary.fact(name).show(value) for name, value in sorted(told.items())}
             yield json.dumps({"time": tick["time"], "facts": facts}, ensure_ascii=False, separators=(",", ":"))
             next_look = tick["time"] + LOOKS_EVERY
+
+
+def eye_of(log: Log) -> Iterator[tuple[Mapping[str, Any], Mapping[str, Any], Sequence[str]]]:
+    """Every tick with what the eye reports and does not; the log writes both only where they change."""
+    facts: Mapping[str, Any] = {}
+    silent: Sequence[str] = ()
+    for tick in log.ticks:
+        facts = facts if tick["facts"] is None else tick["facts"]
+        silent = silent if tick["silent"] is None else tick["silent"]
+        yield tick, facts, silent
 
 
 def first_difference(one: Log, other: Log) -> str:

@@ -29,15 +29,17 @@ Record = dict[str, Any]
 
 
 class Recorder:
-    """Makes the record of a tick; keeps the last station, so that the next is looked for nearby."""
+    """Makes the record of a tick; keeps the last station, so that the next is looked for nearby, and what the eye said last."""
 
     def __init__(self, downtrack: Downtrack, footprint: Footprint) -> None:
         self._downtrack, self._footprint = downtrack, footprint
         self._near: float | None = None
+        self._facts: Mapping[str, Value] | None = None
+        self._silent: frozenset[str] | None = None
 
     def tick(self, observation: Observation, decision: Decision) -> Record:
         """The record of one tick, keys in their order."""
-        chosen = None if decision.chosen is None else decision.candidates[decision.chosen]
+        candidates = [candidate_record(item) for item in decision.candidates]
         return {
             "kind": "tick",
             "time": observation.time,
@@ -49,16 +51,15 @@ class Recorder:
             "flag": decision.flag,
             "reason": decision.reason,
             "ego": self._ego(observation),
-            "law": None if chosen is None or chosen.verdict is None else law_record(chosen.verdict),
+            "law": None if decision.chosen is None else candidates[decision.chosen]["law"],
             "chosen": decision.chosen,
             "margin": decision.margin,
-            "candidates": [candidate_record(item) for item in decision.candidates],
+            "candidates": candidates,
             "plan": plan_record(decision.trajectory) if decision.strategic else None,
             "emergency": emergency_record(decision.emergency),
             "tracks": self._tracks(observation),
             "signals": {name: [[i.color, i.shape, i.flashing] for i in shown] for name, shown in sorted(observation.signals.items())},
-            "facts": dict(sorted(observation.facts.items())),
-            "silent": sorted(observation.silent),
+            **self._seen(observation),
             "events": decision.events,
         }
 
@@ -72,6 +73,13 @@ class Recorder:
             "turn_signal": ego.turn_signal, "station": station, "front": front, "offset": offset,
         }  # fmt: skip
 
+
+    def _seen(self, observation: Observation) -> Record:
+        """What the eye reports and does not; None where it is as in the tick before."""
+        facts = None if observation.facts == self._facts else dict(sorted(observation.facts.items()))
+        silent = None if observation.silent == self._silent else sorted(observation.silent)
+        self._facts, self._silent = observation.facts, observation.silent
+        return {"facts": facts, "silent": silent}
 
     def _tracks(self, observation: Observation) -> list[Record]:
         """Every road user with its clearance: the distance, edge to edge, between its box and the vehicle's."""
