@@ -80,10 +80,10 @@ def until(true: Callable[[], bool]) -> None:
 
 
 def answered(loop: PerceptionLoop, clock: Clock, count: int) -> None:
-    """Offer frames, at times 0.3 s apart, until so many more have been answered."""
+    """Offer frames, at times 0.3 s apart and after any pause, until so many more have been answered."""
     wanted = loop.health.answers + count
     while loop.health.answers < wanted:
-        clock.now += 0.3
+        clock.now = max(clock.now + 0.3, loop.health.waits_until)
         before = loop.last_answer
         loop.offer(frame(clock))
         until(lambda before=before: loop.last_answer is not before)  # type: ignore[misc]
