@@ -181,7 +181,7 @@ def make_mind(
     """Everything that thinks, from law, map and route. Raises RegdbRuntimeError for what does not fit together."""
     profile = database.interpretations[settings.interpretation]
     paths = paths_of(road_map, route, footprint, settings.strategy)
-    strategist = Strategist(Machine(database.machine), road_map, route, footprint, settings.strategy, paths)
+    strategist = Strategist(Machine(database.machine, _asked(road_map, route)), road_map, route, footprint, settings.strategy, paths)
     scenes = Scenes(road_map, database, footprint, interpretation=profile)
     assessor = Assessor(database, footprint, interpretation=profile, road_map=road_map)
     sampler = Sampler(footprint, settings.lattice, settings.limits, settings.comfortable, settings.beyond_comfort, settings.cost)
@@ -189,3 +189,7 @@ def make_mind(
     return Mind(strategist, evaluator, scenes.history(), predictor or AlongLanes(paths.graph, paths.built), settings)
 
 
+def _asked(road_map: RoadMap, route: Route) -> frozenset[str]:
+    """The extension states that the route asks for: a U-turn where it makes one."""
+    turns = any(road_map.lanes[name].turn == "u_turn" for name in route.lanes)
+    return frozenset(("intersection_handling.u_turn",)) if turns else frozenset()
