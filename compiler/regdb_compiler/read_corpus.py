@@ -17,7 +17,7 @@ from regdb_compiler.entries import CaseEntry, OutlineEntry, SectionEntry
 from regdb_compiler.parse import parse_document
 from regdb_compiler.read_fusion import FusionReader
 from regdb_compiler.read_interpretations import InterpretationEntry, read_interpretation
-from regdb_compiler.read_vocabulary import jurisdictions_of, read_attributes, read_fact, read_jurisdictions, read_states
+from regdb_compiler.read_vocabulary import jurisdictions_of, read_attributes, read_fact, read_jurisdictions, read_states, word_problems
 from regdb_compiler.source import Mapping as MappingNode
 from regdb_compiler.source import Sequence as SequenceNode
 from regdb_compiler.source import SourceFile, read_source
@@ -179,7 +179,7 @@ def _read_vocabulary(reader: _Reader) -> tuple[Vocabulary, dict[str, Place]]:
     read, problems = read_attributes(attributes, facts)
     reader.problems += problems
     facts, problems = fusion.complete(facts)
-    reader.problems += problems
+    reader.problems += [*problems, *word_problems(facts, words, places)]
     return Vocabulary(facts.values(), read, words), places
 
 

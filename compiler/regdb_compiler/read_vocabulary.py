@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import difflib
-from collections.abc import Iterable, Iterator
+import re
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import replace
 from typing import Any
 
@@ -12,7 +13,7 @@ from regdb.states import State, StateMachine, SuperState
 from regdb.units import UnitError, unit_named
 from regdb.vocabulary import Assumption, Attribute, Fact, FactError, Value
 from regdb_compiler import documents
-from regdb_compiler.diagnostics import Diagnostic
+from regdb_compiler.diagnostics import Diagnostic, Place
 from regdb_compiler.parse import place_at
 from regdb_compiler.source import SourceFile
 
@@ -49,6 +50,23 @@ def read_fact(name: str, doc: documents.Fact, file: SourceFile) -> tuple[Fact | 
         name, doc.type, doc.meaning, doc.source, doc.values, doc.unit, assumption, quiet, phrases, doc.confusables, doc.codes, doc.entails
     )
     return fact, []
+
+
+_CLASS = re.compile(r"\{([^}]*)\}")
+
+
+def word_problems(facts: Mapping[str, Fact], words: Mapping[str, tuple[str, ...]], places: Mapping[str, Place]) -> Iterator[Diagnostic]:
+    """Phrases that name a class of words nobody declares, and entailed facts that are no boolean facts."""
+    for fact in facts.values():
+        named = {name for phrases in fact.phrases.values() for phrase in phrases for name in _CLASS.findall(phrase)}
+        for name in sorted(named - set(words) - {"n"}):
+            near = difflib.get_close_matches(name, words, 1)
+            found = Diagnostic("R410", "bad-fact", "error", f"fact `{fact.name}`: no class of words `{name}` is declared", places[fact.name])
+            yield replace(found, note=f"did you mean {near[0]}?" if near else "")
+        for name in fact.entails:
+            if name not in facts or facts[name].kind != "boolean":
+                message = f"fact `{fact.name}` entails `{name}`, which is no boolean fact"
+                yield Diagnostic("R410", "bad-fact", "error", message, places[fact.name])
 
 
 def _shape_problem(doc: documents.Fact) -> str:

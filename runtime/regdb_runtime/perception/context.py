@@ -291,7 +291,7 @@ def _other(context: Context, cue: Cue) -> None:
     """`oncoming traffic has a green light`, `the light for the cross street is red`: no light of ours."""
     said = context.said
     link = next((at for at in range(cue.first - 1, max(-1, cue.first - 4), -1) if said[at] == "for"), -1)
-    if link > 0 and said[link - 1] in _LIGHTS:
+    if link > 0 and said[link - 1] in _LIGHTS and "at" not in said[max(0, link - 5) : link]:
         for at in range(link, max(-1, link - 8), -1):
             if said[at] in _STRONG or said[at] in (",", "but"):
                 break
