@@ -34,9 +34,9 @@ REAR_OVERHANG, WHEELBASE = 0.198, 0.583
 """Shares of a vehicle's length: those of `Footprint`'s mid-size car, for vehicles of which only the rectangle was recorded."""
 
 NEVER_SCRIPTED = frozenset((
-    "intersection.control", "signal.present", "signal.place", "sign.stop", "sign.yield", "sign.all_way", "sign.speed_limit", "stop_line.present",
+    "intersection.control", "signal.present", "signal.place", "sign.stop", "sign.yield", "sign.all_way", "stop_line.present",
 ))  # fmt: skip
-"""What controls a junction, posted limits: these streets have them, and where their map leaves them out they are not absent."""
+"""What controls a junction: where the map leaves it out it is not absent."""
 
 
 class RecordedWorld:

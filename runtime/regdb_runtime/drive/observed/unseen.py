@@ -27,9 +27,9 @@ STRADDLES = frozenset(("plan.straddles_lanes",))
 """Likewise while it may belong to a change of lane that the recording shows only in part."""
 SHAPE = frozenset((
     "lane.turns", "lane.turn_marked", "lane.designated_for_turn", "road.types", "road.two_way", "road.one_way", "road.lanes",
-    "road.lanes_same_direction", "road.divided", "ego.lane_position",
+    "road.lanes_same_direction", "road.divided", "ego.lane_position", "sign.speed_limit",
 ))  # fmt: skip
-"""What a map's lanes show themselves, or leave open: their arrows, and the half of the road that is missing from it, are not for a script to say."""
+"""What a map's lanes show themselves, or leave open: their arrows and limits, and the half of the road that is missing, no script says."""
 BY_VIEW = frozenset(("plan.lacks_due_care", "speed.unsafe_for_conditions"))
 """Judgements on how far the driver saw a clear road."""
 MAKE = frozenset((
