@@ -7,10 +7,12 @@ Each failing scene is written as JSON, made as small as it still fails; `regdb d
 from __future__ import annotations
 
 import argparse
+import signal
 import sys
 from collections import Counter
 from collections.abc import Iterator
 from concurrent.futures import ProcessPoolExecutor
+from dataclasses import dataclass, field
 from functools import lru_cache, partial
 from pathlib import Path
 
@@ -49,6 +51,29 @@ def outcomes(seeds: range, seconds: float, jobs: int) -> Iterator[Outcome]:
         yield from pool.map(partial(drive_seed, seconds=seconds), seeds, chunksize=1)
 
 
+@dataclass
+class Tally:
+    """What a series of drives came to so far."""
+
+    scenes: int = 0
+    faults: Counter[str] = field(default_factory=Counter)
+    flags: Counter[str] = field(default_factory=Counter)
+    driven: float = 0.0
+    seconds: float = 0.0
+
+    def add(self, outcome: Outcome) -> None:
+        self.scenes += 1
+        self.faults.update(fault.kind for fault in outcome.faults)
+        self.flags.update(outcome.flags)
+        self.driven, self.seconds = self.driven + outcome.driven, self.seconds + outcome.seconds
+
+    def __str__(self) -> str:
+        lines = [f"{self.scenes} scenes, {self.seconds:.0f} s, {self.driven / 1000:.1f} km, {sum(self.flags.values())} ticks"]
+        lines.append("flags: " + ", ".join(f"{name or 'lawful'} {count}" for name, count in self.flags.most_common()))
+        lines.append("faults: " + (", ".join(f"{name} {count}" for name, count in self.faults.most_common()) or "none"))
+        return "\n".join(lines)
+
+
 def main() -> int:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("first", type=int)
@@ -58,23 +83,23 @@ def main() -> int:
     parser.add_argument("--shrink", action="store_true", help="make failing scenes smaller before they are written")
     parser.add_argument("-o", "--out", type=Path, default=Path("out/drives"))
     chosen = parser.parse_args()
-    seeds = range(chosen.first, chosen.last)
-    faults, flags, driven, seconds = Counter[str](), Counter[str](), 0.0, 0.0
-    for seed, outcome in zip(seeds, outcomes(seeds, chosen.seconds, chosen.jobs), strict=True):
-        flags.update(outcome.flags)
-        driven, seconds = driven + outcome.driven, seconds + outcome.seconds
-        for fault in outcome.faults:
-            faults[fault.kind] += 1
-            print(f"seed {seed}: {fault.kind} at {fault.time:.1f} s: {fault.what}", flush=True)
-        if outcome.faults:
-            spec = small_failure(seed, outcome.faults[0]) if chosen.shrink else random_scene(seed)
-            chosen.out.mkdir(parents=True, exist_ok=True)
-            (chosen.out / f"{outcome.scene}.json").write_text(spec.to_json(), "utf-8")
-    ticks = sum(flags.values())
-    print(f"{len(seeds)} scenes, {seconds:.0f} s, {driven / 1000:.1f} km, {ticks} ticks")
-    print("flags: " + ", ".join(f"{name or 'lawful'} {count}" for name, count in flags.most_common()))
-    print("faults: " + (", ".join(f"{name} {count}" for name, count in faults.most_common()) or "none"))
-    return 1 if faults else 0
+    signal.signal(signal.SIGTERM, signal.default_int_handler)  # stopped or interrupted, it says what there was
+    seeds, tally = range(chosen.first, chosen.last), Tally()
+    try:
+        for seed, outcome in zip(seeds, outcomes(seeds, chosen.seconds, chosen.jobs), strict=True):
+            tally.add(outcome)
+            if tally.scenes % 10 == 0:
+                print(f"{tally.scenes} of {len(seeds)}", file=sys.stderr, flush=True)
+            for fault in outcome.faults:
+                print(f"seed {seed}: {fault.kind} at {fault.time:.1f} s: {fault.what}", flush=True)
+            if outcome.faults:
+                spec = small_failure(seed, outcome.faults[0]) if chosen.shrink else random_scene(seed)
+                chosen.out.mkdir(parents=True, exist_ok=True)
+                (chosen.out / f"{outcome.scene}.json").write_text(spec.to_json(), "utf-8")
+    except KeyboardInterrupt:
+        print("interrupted", file=sys.stderr)
+    print(tally)
+    return 1 if tally.faults or tally.scenes < len(seeds) else 0
 
 
 if __name__ == "__main__":
