@@ -5,27 +5,32 @@ from __future__ import annotations
 import re
 from functools import lru_cache
 
-from regdb.front import database
 from regdb_runtime.database import RegulationDatabase
 from regdb_runtime.perception.evidence import Reading, Span, Statement
 from regdb_runtime.perception.matcher import Matcher
 
+from regdb.front import database
+
 PRESENT: dict[str, tuple[str, ...]] = {
-    "stop_sign": ("sign.stop",), "stop_here_on_red": ("sign.stop_here_on_red",), "yield_sign": ("sign.yield",), "no_turn_on_red": ("sign.no_turn_on_red",),
-    "no_left_turn": ("sign.no_left_turn",), "no_right_turn": ("sign.no_right_turn",), "no_u_turn": ("sign.no_u_turn",), "do_not_enter": ("sign.do_not_enter",),
-    "wrong_way": ("sign.wrong_way",), "one_way": ("road.one_way",), "road_closed": ("road.closed", "sign.street_closed"), "no_parking": ("sign.no_parking",),
-    "no_passing": ("sign.no_passing",), "left_turn_only": ("sign.left_turn_only",), "right_turn_only": ("sign.right_turn_only",), "keep_left": ("sign.keep_left",),
-    "keep_right": ("sign.keep_right",), "no_trucks": ("sign.no_trucks",), "no_bicycles": ("sign.no_bicycles",), "no_pedestrians": ("sign.no_pedestrians",),
-    "school_zone": ("school.zone", "sign.school", "sign.school_limit"), "end_school_zone": ("sign.end_school_zone",), "road_work": ("work_zone.present", "sign.road_work"),
-    "end_road_work": ("sign.end_road_work",), "residential": ("district.residence",), "parking_lot": ("place.parking_lot",), "bus_stop": ("place.bus_stop",),
+    "stop_sign": ("sign.stop",), "stop_here_on_red": ("sign.stop_here_on_red",), "yield_sign": ("sign.yield",),
+    "no_turn_on_red": ("sign.no_turn_on_red",), "no_left_turn": ("sign.no_left_turn",), "no_right_turn": ("sign.no_right_turn",),
+    "no_u_turn": ("sign.no_u_turn",), "do_not_enter": ("sign.do_not_enter",), "wrong_way": ("sign.wrong_way",), "one_way": ("road.one_way",),
+    "road_closed": ("road.closed", "sign.street_closed"), "no_parking": ("sign.no_parking",), "no_passing": ("sign.no_passing",),
+    "left_turn_only": ("sign.left_turn_only",), "right_turn_only": ("sign.right_turn_only",), "keep_left": ("sign.keep_left",),
+    "keep_right": ("sign.keep_right",), "no_trucks": ("sign.no_trucks",), "no_bicycles": ("sign.no_bicycles",),
+    "no_pedestrians": ("sign.no_pedestrians",), "school_zone": ("school.zone", "sign.school", "sign.school_limit"),
+    "end_school_zone": ("sign.end_school_zone",), "road_work": ("work_zone.present", "sign.road_work"), "end_road_work": ("sign.end_road_work",),
+    "residential": ("district.residence",), "parking_lot": ("place.parking_lot",), "bus_stop": ("place.bus_stop",),
     "intersection": ("intersection.present",), "roundabout": ("intersection.roundabout",), "railroad_crossing": ("rail.crossing_ahead",),
-    "crosswalk": ("crosswalk.present", "crosswalk.marked", "sign.pedestrian_crossing"), "bicycle_lane": ("bicycle_lane.present", "sign.bicycle_lane"),
-    "bus_lane": ("bus_lane.present",), "hov_lane": ("hov_lane.present",), "two_way": ("road.two_way",), "stop_line": ("stop_line.present",), "lane_ends": ("lane.ends",),
-    "speed_bump": ("road.speed_bump",), "curve": ("road.curve_ahead",), "traffic_cones": ("traffic_cones.present",), "barrier": ("barrier.present",),
-    "pedestrian": ("pedestrian.present",), "pedestrian_crossing": ("pedestrian.on_roadway", "pedestrian.in_crosswalk"), "cyclist": ("bicycle.present",),
-    "motorcyclist": ("motorcycle.present",), "lead_vehicle": ("lead.present",), "oncoming_vehicle": ("oncoming.meeting",), "parked_vehicle": ("parked_vehicle.present",),
-    "lane_blocked": ("obstruction.ahead",), "emergency_vehicle": ("emergency_vehicle.present",), "school_bus": ("school_bus.present",),
-    "worker": ("work_zone.workers_near",), "traffic_director": ("director.present",),
+    "crosswalk": ("crosswalk.present", "crosswalk.marked", "sign.pedestrian_crossing"),
+    "bicycle_lane": ("bicycle_lane.present", "sign.bicycle_lane"), "bus_lane": ("bus_lane.present",), "hov_lane": ("hov_lane.present",),
+    "two_way": ("road.two_way",), "stop_line": ("stop_line.present",), "lane_ends": ("lane.ends",), "speed_bump": ("road.speed_bump",),
+    "curve": ("road.curve_ahead",), "traffic_cones": ("traffic_cones.present",), "barrier": ("barrier.present",),
+    "pedestrian": ("pedestrian.present",), "pedestrian_crossing": ("pedestrian.on_roadway", "pedestrian.in_crosswalk"),
+    "cyclist": ("bicycle.present",), "motorcyclist": ("motorcycle.present",), "lead_vehicle": ("lead.present",),
+    "oncoming_vehicle": ("oncoming.meeting",), "parked_vehicle": ("parked_vehicle.present",), "lane_blocked": ("obstruction.ahead",),
+    "emergency_vehicle": ("emergency_vehicle.present",), "school_bus": ("school_bus.present",), "worker": ("work_zone.workers_near",),
+    "traffic_director": ("director.present",),
 }  # fmt: skip
 """Key -> the boolean facts (or facts with a value other than none) that make it hold."""
 

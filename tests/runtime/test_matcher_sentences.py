@@ -5,11 +5,11 @@ from pathlib import Path
 
 import pytest
 import yaml
+from regdb_runtime.database import RegulationDatabase
+from regdb_runtime.perception.matcher import Matcher
 
 from regdb.front import database
 from regdb.vocabulary import Value
-from regdb_runtime.database import RegulationDatabase
-from regdb_runtime.perception.matcher import Matcher
 
 DATA = yaml.safe_load((Path(__file__).parent / "data" / "matcher_sentences.yaml").read_text())
 WAYS = ("plain", "negated", "hedged", "conditional", "other", "ended")

@@ -1,11 +1,11 @@
 """Table III of the paper: what its nine recorded responses say, and what the signs' own legends would have said."""
 
 import pytest
+from regdb_runtime.database import RegulationDatabase
+from regdb_runtime.perception.matcher import Matcher
 
 from regdb.front import database
 from regdb.vocabulary import Value
-from regdb_runtime.database import RegulationDatabase
-from regdb_runtime.perception.matcher import Matcher
 
 MPH_20 = 20 * 0.44704
 

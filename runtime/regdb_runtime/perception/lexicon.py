@@ -181,7 +181,7 @@ class Lexicon:
                         self._follow(node, begin, sequence, kept, words, found)
         return found
 
-    def _follow(  # noqa: PLR0913
+    def _follow(
         self, node: dict[str, object], begin: int, sequence: list[str], kept: list[int], words: list[str], found: list[Match]
     ) -> None:
         """Walk the trie from one token; every end reached is a match."""
@@ -192,8 +192,7 @@ class Lexicon:
             node, at, mask, number, last = stack.pop()
             entries = node.get(_END)
             if entries is not None:
-                for entry in entries:  # type: ignore[attr-defined]
-                    found.append(Match(entry, first, last, mask, number))
+                found += [Match(entry, first, last, mask, number) for entry in entries]  # type: ignore[attr-defined]
                 if len(node) == 1:
                     continue
             if at >= size:

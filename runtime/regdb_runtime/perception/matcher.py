@@ -135,7 +135,8 @@ class _SentenceReader:
             if why or (denied and not isinstance(value, bool)):
                 self.aside.append((effect.fact, match.mask, why or "denied"))
             else:
-                self.said.append(_Said(effect.fact, value is not denied if isinstance(value, bool) else value, match.mask, f"phrase {match.entry.phrase!r}", hedged))
+                meant = value is not denied if isinstance(value, bool) else value
+                self.said.append(_Said(effect.fact, meant, match.mask, f"phrase {match.entry.phrase!r}", hedged))
 
     def _number(self, name: str, at: int) -> Value | None:
         """The number at this token in SI; without a unit the fact's usual one is meant. None where the unit does not fit."""
@@ -180,13 +181,14 @@ class _SentenceReader:
         if light.arrow:
             self.said.append(_Said("signal.shape", shape, light.mask, "light and colour", hedged))
         if light.flashing:
-            self.said.append(_Said("signal.flashing", True, light.mask, "light and colour", hedged))
+            self.said.append(_Said("signal.flashing", value=True, mask=light.mask, rule="light and colour", hedged=hedged))
 
     def _settle(self) -> None:
         """What the facts entail, then each statement once, in the order of its place."""
         for said in tuple(self.said):
             if said.value is not False and said.value != "none":
-                self.said += (_Said(name, True, said.mask, f"{said.rule}, by {said.fact}", said.hedged) for name in self.matcher._entails.get(said.fact, ()))
+                for name in self.matcher._entails.get(said.fact, ()):
+                    self.said.append(_Said(name, value=True, mask=said.mask, rule=f"{said.rule}, by {said.fact}", hedged=said.hedged))
         once: dict[tuple[str, Value, int], _Said] = {}
         for said in self.said:
             key = said.fact, said.value, said.mask if said.fact in _OF_A_LIGHT else 0

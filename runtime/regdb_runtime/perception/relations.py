@@ -12,8 +12,8 @@ from regdb_runtime.perception.word_set import word_set
 LINKS = word_set(
     """is are was were be being been remain remaining remained stay show showing shown showed display displaying displayed turn turning turned
     indicate indicating indicated become became change changing changed appear appearing seem seeming look looking go going went staying
-    read reading lit illuminated flash flashing flashed glow glowing glowed have having has blink blinking blinked switch switched switching shine shining shone
-    with in to emit emitting at"""
+    read reading lit illuminated flash flashing flashed glow glowing glowed have having has blink blinking
+    blinked switch switched switching shine shining shone with in to emit emitting at"""
 )
 """Between a light and its colour: `the light IS red`, `SHOWING green`."""
 _LEFT_WORDS = word_set(
@@ -56,7 +56,10 @@ class LightWords:
 def lights(sentence: Sentence, words: LightWords, swallowed: int, before: bool) -> Iterator[Shown]:
     """Every colour a light of the sentence is said to show. `before`: the sentence before ended speaking of a light."""
     said = sentence.words
-    heads = [at for at, word in enumerate(said) if (word in words.heads or word in words.arrows) and not swallowed >> at & 1 and not _of_another(said, at, words)]
+    heads = [
+        at for at, word in enumerate(said)
+        if (word in words.heads or word in words.arrows) and not swallowed >> at & 1 and not _of_another(said, at, words)
+    ]  # fmt: skip
     if not heads and not before:
         return
     colors = [at for at, word in enumerate(said) if word in words.colors and not swallowed >> at & 1]
@@ -84,7 +87,8 @@ def _of_another(said: list[str], head: int, words: LightWords) -> bool:
     after = said[head + 1 : head + 4]
     if len(after) > 1 and after[0] in ("on", "of") and any(word in words.things for word in after[1:]):
         return True
-    return "flashing" in said and any(word in words.things and at < head for at, word in enumerate(said[: head + 1]) if at >= head - 8 and said[at - 1] in ("school", "police"))
+    near = range(max(1, head - 8), head)
+    return "flashing" in said and any(said[at] in words.things and said[at - 1] in ("school", "police") for at in near)
 
 
 def _shown(said: list[str], at: int, head: int, words: LightWords) -> Shown:

@@ -9,12 +9,15 @@ from regdb_runtime.perception.normalise import Normalised
 from regdb_runtime.perception.word_set import word_set
 
 _TOKEN = re.compile(r"km/h|mi/h|[^\W\d_]+(?:'[^\W\d_]+)?|\d+(?:[.,]\d+)*|[.,;:!?()\[\]\n\"/&%+]|(?<!\w)'|'(?!\w)|(?<=\s)-+(?=\s)")
-_ABBREVIATED = word_set("st ave blvd rd dr mr mrs ms approx etc e.g i.e eg ie vs hwy dept jr sr inc ft no")
+_ABBREVIATED = word_set("st ave blvd rd dr mr mrs ms approx etc e.g i.e eg ie vs hwy dept jr sr inc ft")
 _STOPS = frozenset(".!?\n")
 
-_ONES = {word: n for n, word in enumerate(
-    ["zero", "one", "two", "three", "four", "five", "six", "seven", "eight", "nine", "ten", "eleven", "twelve", "thirteen", "fourteen", "fifteen", "sixteen", "seventeen", "eighteen", "nineteen"])}  # fmt: skip
-_TENS = {word: 10 * n for n, word in enumerate(["twenty", "thirty", "forty", "fifty", "sixty", "seventy", "eighty", "ninety"], 2)}
+_SMALL = (
+    "zero", "one", "two", "three", "four", "five", "six", "seven", "eight", "nine", "ten", "eleven", "twelve", "thirteen", "fourteen", "fifteen",
+    "sixteen", "seventeen", "eighteen", "nineteen",
+)  # fmt: skip
+_ONES = {word: n for n, word in enumerate(_SMALL)}
+_TENS = {word: 10 * n for n, word in enumerate(("twenty", "thirty", "forty", "fifty", "sixty", "seventy", "eighty", "ninety"), 2)}
 _NUMBERS = frozenset(_ONES) | frozenset(_TENS)
 _DIGITS = frozenset("0123456789")
 _UNITS = {
