@@ -75,9 +75,8 @@ class RegulationCostFunction:
 def plan_of(sample: Any) -> Trajectory:
     """A `TrajectorySample` as a plan; its jerk by differences, its stations and offsets those of CommonRoad's own path."""
     cartesian, dt = sample.cartesian, float(sample.dt)
-    x, y, heading, speed, acceleration, curvature = (
-        np.asarray(getattr(cartesian, name), dtype=np.float64) for name in ("x", "y", "theta", "v", "a", "kappa")
-    )
+    rows: list[Floats] = [np.asarray(getattr(cartesian, name), dtype=np.float64) for name in ("x", "y", "theta", "v", "a", "kappa")]
+    x, y, heading, speed, acceleration, curvature = rows
     time: Floats = np.arange(len(x)) * dt
     jerk: Floats = np.asarray(np.gradient(acceleration, dt), dtype=np.float64) if len(x) > 1 else np.zeros_like(x)
     curvilinear = getattr(sample, "curvilinear", None)
