@@ -7,8 +7,8 @@ same wrong answer (8 answers, 4 s, on average). A light detector that looks wher
 looks, independently or in runs of 5; a light that reports its phase to the map (SPaT) says each tenth of a second what it shows, 0.3 s late.
 Counted are episodes in which `signal.color` is fused as green while the light is red, each from its first to its last moment.
 
-The fusion itself runs, statement by statement, over every stretch of red in which the model says green at all; elsewhere nothing could make it
-say so (three seconds back are run with it, longer than anything about a light is remembered).
+The fusion itself runs at every look of the model over every stretch of red in which the model says green as often as the policy asks; elsewhere
+nothing could make it say so (three seconds back are run with it, longer than anything about a light is remembered).
 """
 
 # ruff: noqa: T201  # a script whose result is what it prints
@@ -38,9 +38,11 @@ BEFORE = 3.0
 DETECTOR_ERROR, DETECTOR_RUN, DETECTOR_HZ = 0.005, 5.0, 10.0
 SPAT_LATE, SPAT_HZ = 0.3, 10.0
 MODEL_HZ, MODEL_RUN = 2.0, 8.0
+OTHERWISE = 100.0
+"""Hours simulated where the map says nothing."""
 BLOCK = 50.0
 """Hours simulated at once."""
-RATES = (0.01, 0.02, 0.05, 0.10)
+RATES = (0.01, 0.05, 0.10)
 BESIDE = ("nothing", "detector", "detector in runs", "map")
 
 
@@ -113,8 +115,11 @@ def stretches(model: Looks) -> Iterator[tuple[float, float]]:
 
 
 def episodes(fact: Fact, policy: FusionPolicy, sources: tuple[Looks, ...], span: tuple[float, float]) -> int:
-    """Times within a span at which the fused light turns green while the light is red: the pure core, at every look."""
+    """Times within a span at which the fused light turns green while the light is red: the pure core, at every look of the model."""
     held: list[Held] = []
+    low, high = np.searchsorted(sources[0].times, span)
+    if np.count_nonzero(sources[0].said[low:high] == 0) < policy.confirmations:
+        return 0
     for look in sources:
         low, high = np.searchsorted(look.times, span)
         held += [
@@ -127,6 +132,8 @@ def episodes(fact: Fact, policy: FusionPolicy, sources: tuple[Looks, ...], span:
         now = item.captured
         while held[first].captured < now - BEFORE:
             first += 1
+        if item.statement.source != "model":
+            continue
         if not _model_greens(held[first : index + 1], policy.confirmations):
             was = False
             continue
@@ -188,8 +195,8 @@ def table(vocabulary: Vocabulary, hours: float, seed: int) -> Iterator[tuple[str
     loose = without_corroboration(vocabulary)
     for run in (1.0, MODEL_RUN):
         for rate in RATES:
-            alone = simulate(vocabulary, rate, run, "nothing", min(hours, 100.0), seed, loose)
-            rows = [simulate(vocabulary, rate, run, kind, hours if kind == "map" else min(hours, 100.0), seed) for kind in BESIDE]
+            alone = simulate(vocabulary, rate, run, "nothing", min(hours, OTHERWISE), seed, loose)
+            rows = [simulate(vocabulary, rate, run, kind, hours if kind == "map" else min(hours, OTHERWISE), seed) for kind in BESIDE]
             shares = (shown(alone.raw, alone.hours), shown(alone.fused, alone.hours), *(shown(row.fused, row.hours) for row in rows))
             yield (f"{rate:.0%}", "independent" if run == 1 else f"in runs of {run:.0f}", *shares)
 
@@ -211,7 +218,8 @@ def main() -> None:
     print("|---|---|---|---|---|---|---|---|")
     for row in table(vocabulary, arguments.hours, arguments.seed):
         print("| " + " | ".join(row) + " |", flush=True)
-    print(f"\n{arguments.hours:g} hours with the map, 100 hours otherwise, seed {arguments.seed}, {time.perf_counter() - began:.0f} s")
+    other, took = min(arguments.hours, OTHERWISE), time.perf_counter() - began
+    print(f"\n{arguments.hours:g} hours with the map, {other:g} hours otherwise, seed {arguments.seed}, {took:.0f} s")
 
 
 if __name__ == "__main__":

@@ -20,6 +20,7 @@ from regdb_compiler.ledger import MEANINGS, STATUSES, Account, count, ledgers
 
 from regdb import schema
 from regdb.cli import COMMANDS
+from regdb.fusion_policy import Reach
 from regdb.state_diagram import to_mermaid
 from regdb.vocabulary import Fact
 
@@ -76,6 +77,49 @@ def _fact_row(fact: Fact) -> tuple[object, ...]:
         within = f" within {held.within}" if held.within else ""
         unknown = f"assume {fact.show(held.value)}{within}: {held.because}"
     return f"`{fact.name}`", kind, fact.source, unknown, fact.meaning
+
+
+def fusion() -> str:
+    """How statements on every fact are believed and forgotten, by class."""
+    facts = law().corpus.vocabulary
+    fused = [fact for fact in facts if fact.fusion is not None]
+    parts = ["# Fusion\n", _ABOUT_FUSION.format(count=len(fused))]
+    head = (
+        "fact", "what permits", "restriction holds", "permission counts", "confirmed by", "corroborated by", "ends", "matters with",
+        "refused beyond",
+    )  # fmt: skip
+    for name in sorted({fact.fusion.ages for fact in fused if fact.fusion is not None}):
+        own = [fact for fact in fused if fact.fusion is not None and fact.fusion.ages == name]
+        parts.append(f"## {name}\n\n" + table(head, map(_fusion_row, own)))
+    return "\n".join(parts)
+
+
+_ABOUT_FUSION = """{count} facts can be told by several sources or at several times. [How facts age](../explanation/how-facts-age.md) says why,
+[the file format](format.md#fusion) how it is written.
+"""
+
+
+def _fusion_row(fact: Fact) -> tuple[object, ...]:
+    policy = fact.fusion
+    assert policy is not None
+    permitting = ", ".join("true" if value is True else "false" if value is False else value for value in policy.permissive.values)
+    for sign, bound in (("above", policy.permissive.above), ("below", policy.permissive.below)):
+        permitting += f"{sign} {fact.show(bound)}" if bound is not None else ""
+    if not permitting:
+        permitting = "every number" if fact.is_numeric else "nothing"
+    confirmed = f"{policy.confirmations} within {policy.within:g} s"
+    bounds = [fact.show(bound) for bound in (policy.least, policy.most) if bound is not None]
+    step = f", in steps of {fact.show(policy.step)}" if policy.step else ""
+    replaced = ", or till replaced" if policy.replaced else ""
+    return (
+        f"`{fact.name}`", permitting, _reach(policy.holds) + replaced, _reach(policy.fresh), confirmed, " or ".join(policy.corroboration),
+        ", ".join(policy.ends), ", ".join(policy.places), " to ".join(bounds) + step,
+    )  # fmt: skip
+
+
+def _reach(reach: Reach) -> str:
+    bounds = [f"{value:g} {unit}" for value, unit in ((reach.seconds, "s"), (reach.metres, "m")) if value != float("inf")]
+    return ", ".join(bounds) or "for ever"
 
 
 def states() -> str:
@@ -181,6 +225,7 @@ GENERATED: dict[str, Callable[[], str]] = {
     "command-line.md": command_line,
     "lint-rules.md": lint_rules,
     "vocabulary.md": vocabulary,
+    "fusion.md": fusion,
     "states.md": states,
     "database.md": database,
     "codes.md": codes,
