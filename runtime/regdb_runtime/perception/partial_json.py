@@ -11,7 +11,8 @@ DEPTH = 6
 """Answers are two levels deep; deeper nesting is garbage, and must not exhaust the stack."""
 
 _SPACE = re.compile(r"[ \t\r\n]*")
-_NUMBER = re.compile(r"-?\d+(?:\.\d+)?(?:[eE][+-]?\d+)?")
+_NUMBER = re.compile(r"(-?\d+(?:\.\d+)?(?:[eE][+-]?\d+)?)(?=[,\]}\s])")
+"""A number is whole only where something that cannot belong to it follows."""
 _STRING = re.compile(r'"(?:[^"\\]|\\.)*"', re.DOTALL)
 _WORDS: Mapping[str, object] = {"true": True, "false": False, "null": None}
 
@@ -74,7 +75,7 @@ def _value(text: str, at: int, depth: int) -> Piece:
     if mark == '"':
         return _string(text, at)
     number = _NUMBER.match(text, at)
-    if number and number.end() < len(text):
+    if number:
         return Piece(json.loads(number[0]) if _sane(number[0]) else None, at, number.end())
     for word, value in _WORDS.items():
         if text.startswith(word, at):
