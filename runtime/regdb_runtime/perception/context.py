@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from regdb_runtime.perception.cues import ASKING, CUES, POINTING, WEAK_ADVICE
 from regdb_runtime.perception.denial import negation, refusal, said_after
+from regdb_runtime.perception.lexicon import FILLERS
 from regdb_runtime.perception.scope import STRONG, Context, Cue, comma, definite, is_past, until_comma
 from regdb_runtime.perception.sentences import Sentence, tokens
 from regdb_runtime.perception.word_set import word_set
@@ -156,9 +157,10 @@ def _other(context: Context, cue: Cue) -> None:
             if said[at] in STRONG or said[at] in (",", "but"):
                 break
             context.colors_aside.setdefault(at, "other road user")
-    if any(word in ("have", "face", "facing", "get", "see", "given") for word in said[cue.last + 1 : cue.last + 4]):
+    after = next((word for word in said[cue.last + 1 : cue.last + 3] if word not in FILLERS), "")
+    if after in ("light", "signal") or any(word in ("have", "face", "facing", "get", "see", "given") for word in said[cue.last + 1 : cue.last + 4]):
         for at in range(cue.last + 1, min(len(said), cue.last + 9)):
-            if said[at] in STRONG or said[at] in (",", "but", "because", "while"):
+            if said[at] in STRONG or said[at] in (",", "but", "because", "while", "and"):
                 break
             context.colors_aside.setdefault(at, "other road user")
 

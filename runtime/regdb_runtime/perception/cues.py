@@ -103,7 +103,7 @@ TAKES_OBJECT = word_set(
 )
 """After `not` these deny what follows them: `does not show a stop sign`; after other verbs only the verb is denied."""
 
-NO_DENIAL = word_set("need reason doubt matter problem issue longer way choice delay hurry change only other more later")
+NO_DENIAL = word_set("need reason doubt matter problem issue longer way choice delay hurry change only later")
 """After `no` or `not` these deny nothing about the scene."""
 
 OPENERS = word_set("the a an it there this i we our they he she you another")

@@ -7,11 +7,12 @@ from functools import partial
 
 from regdb.units import UnitError, to_si, unit_named
 from regdb.vocabulary import Value, Vocabulary
-from regdb_runtime.perception.context import Context, context_of
+from regdb_runtime.perception.context import context_of
 from regdb_runtime.perception.evidence import Certainty, Reading, Span, Statement
 from regdb_runtime.perception.lexicon import ARTICLES, FILLERS, GAP, QUOTES, Match, compile_lexicon
 from regdb_runtime.perception.normalise import Normalised, normalise
 from regdb_runtime.perception.relations import ACTS, PLACES_CROSSED, LightWords, Shown, crossing_is_act, lights
+from regdb_runtime.perception.scope import Context
 from regdb_runtime.perception.sentences import Sentence, sentences
 from regdb_runtime.perception.speeds import FACTS as SPEED_FACTS
 from regdb_runtime.perception.speeds import Speed, SpeedWords, speeds
@@ -168,6 +169,9 @@ class _SentenceReader:
 
     def _record_light(self, light: Shown, context: Context) -> None:
         first, last = light.anchor, light.mask.bit_length() - 1
+        if light.still:
+            self.said.append(_Said("signal.color", light.color, light.mask, "waits for a change", hedged=False))
+            return
         why = context.why_aside([first, last])
         why = why or next((context.colors_aside[at] for at in range(first, last + 1) if at in context.colors_aside), "")
         if not why and (first in context.denied or last in context.denied):

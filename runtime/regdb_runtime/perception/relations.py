@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass
 
-from regdb_runtime.perception.lexicon import BREAKS, FILLERS, Lexicon
+from regdb_runtime.perception.lexicon import ARTICLES, BREAKS, FILLERS, Lexicon
 from regdb_runtime.perception.sentences import Sentence
 from regdb_runtime.perception.word_set import word_set
 
@@ -28,29 +28,34 @@ _FORWARD = 14
 
 @dataclass(frozen=True, slots=True)
 class Shown:
-    """A light said to show a colour. `mask`: the tokens it rests on; `anchor`: the first of them that context is judged at."""
+    """A light said to show a colour. `mask`: the tokens it rests on; `anchor`: the first of them that context is judged at.
+
+    `still`: the colour somebody waits to see changed.
+    """
 
     color: str
     arrow: bool
     flashing: bool
     mask: int
     anchor: int
+    still: bool = False
 
 
 @dataclass(frozen=True, slots=True)
 class LightWords:
-    """The vocabulary's word classes that lights need: heads, arrows, colours by word, other things that have colours or lamps."""
+    """The vocabulary's word classes that lights need: heads, arrows, colours by word, other things that have colours or lamps, words beside warning lamps."""
 
     heads: frozenset[str]
     arrows: frozenset[str]
     colors: dict[str, str]
     things: frozenset[str]
+    warning: frozenset[str]
 
     @classmethod
     def of(cls, lexicon: Lexicon) -> LightWords:
         """From the classes whose names begin with `light_`."""
         colors = {word: color for color in ("red", "yellow", "green") for word in lexicon.class_of(f"light_{color}")}
-        return cls(lexicon.class_of("light_head"), lexicon.class_of("light_arrow"), colors, lexicon.class_of("light_thing"))
+        return cls(lexicon.class_of("light_head"), lexicon.class_of("light_arrow"), colors, lexicon.class_of("light_thing"), lexicon.class_of("light_warning"))
 
 
 def lights(sentence: Sentence, words: LightWords, swallowed: int, before: bool) -> Iterator[Shown]:
@@ -61,6 +66,10 @@ def lights(sentence: Sentence, words: LightWords, swallowed: int, before: bool) 
         if (word in words.heads or word in words.arrows) and not swallowed >> at & 1 and not _of_another(said, at, words)
     ]  # fmt: skip
     if not heads and not before:
+        return
+    origin = _waiting_from(said, words)
+    if origin >= 0 and heads:
+        yield Shown(words.colors[said[origin]], any(word in words.arrows for word in said), flashing=False, mask=1 << origin | 1 << heads[0], anchor=origin, still=True)
         return
     colors = [at for at, word in enumerate(said) if word in words.colors and not swallowed >> at & 1]
     if not colors:
@@ -75,20 +84,28 @@ def lights(sentence: Sentence, words: LightWords, swallowed: int, before: bool) 
             if at not in taken:
                 taken.add(at)
                 yield _shown(said, at, head, words)
-    if before and not taken and said[0] in _PRONOUNS:
-        for at in _right(said, 0, len(said), words):
-            yield _shown(said, at, 0, words)
+    first = next((at for at, word in enumerate(said) if word not in ("yes", "no", ",")), 0)
+    if before and not taken and said[first] in _PRONOUNS:
+        for at in _right(said, first, len(said), words):
+            yield _shown(said, at, first, words)
+
+
+def _waiting_from(said: list[str], words: LightWords) -> int:
+    """The colour of `waiting for the light to change from red to green`, which it has still; -1 where nobody waits so."""
+    if "from" not in said or not {"wait", "waiting", "until"}.intersection(said):
+        return -1
+    at = said.index("from") + 1
+    return at if at + 1 < len(said) and said[at] in words.colors and said[at + 1] == "to" else -1
 
 
 def _of_another(said: list[str], head: int, words: LightWords) -> bool:
     """Whether the light is a vehicle's: `its red lights`, `the lights on the bus`, `a school bus with flashing red lights`."""
     if any(word in ("its", "their", "his") for word in said[max(0, head - 3) : head]):
         return True
-    after = said[head + 1 : head + 4]
+    after = said[head + 1 : head + 5]
     if len(after) > 1 and after[0] in ("on", "of") and any(word in words.things for word in after[1:]):
         return True
-    near = range(max(1, head - 8), head)
-    return "flashing" in said and any(said[at] in words.things and said[at - 1] in ("school", "police") for at in near)
+    return not _FLASHING.isdisjoint(said) and not words.warning.isdisjoint(said[max(0, head - 8) : head + 9])
 
 
 def _shown(said: list[str], at: int, head: int, words: LightWords) -> Shown:
@@ -102,10 +119,14 @@ def _shown(said: list[str], at: int, head: int, words: LightWords) -> Shown:
 def _left(said: list[str], head: int, words: LightWords) -> Iterator[int]:
     """Colours that stand before the head and belong to it: `red and green lights`, `green left-turn arrow`."""
     at = head - 1
+    colored = False
     while at >= 0:
         word = said[at]
         if word in words.colors:
+            colored = True
             yield at
+        elif word in ARTICLES and not colored:
+            return
         elif word not in _LEFT_WORDS and word not in FILLERS:
             return
         at -= 1
@@ -117,7 +138,7 @@ def _right(said: list[str], head: int, following: int, words: LightWords) -> Ite
     found: list[int] = []
     for at in range(head + 1, min(len(said), head + 1 + _FORWARD)):
         word = said[at]
-        if word in ";!?":
+        if word in ";!?" or (found and word in _NOT_YET):
             break
         if word in words.colors:
             if (at > head + 1 and not linked and said[at - 1] not in (":", ",", "(", "-")) or _colors_another(said, at, words):
@@ -139,9 +160,11 @@ def _right(said: list[str], head: int, following: int, words: LightWords) -> Ite
     yield from found
 
 
-_CHANGES = word_set("now then to turned turn turning changed change became before but")
+_CHANGES = word_set("now then to turned turn turning changed change became")
 """Between two colours of one light: the last is what it shows."""
-_BETWEEN = frozenset(("and", "or", ",", "/", "have", "it", "light", "signal"))
+_BETWEEN = frozenset(("and", "or", ",", "/", "have", "it", "light", "signal", "but"))
+_NOT_YET = word_set("until till before when if once unless will would should must wait waiting so")
+"""What comes after these is no colour that the light has now."""
 
 
 def _colors_another(said: list[str], at: int, words: LightWords) -> bool:
