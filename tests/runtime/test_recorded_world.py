@@ -124,6 +124,8 @@ class TestWorld:
             RecordedWorld(RecordedSpec("test", str(file), vehicle="1", begins=3.0), law.vocabulary)
         with pytest.raises(WorldError, match="needs a route"):
             RecordedWorld(RecordedSpec("test", str(file)), law.vocabulary)
+        with pytest.raises(WorldError, match="stands vehicle 1"):
+            RecordedWorld(RecordedSpec("test", str(file), ("13", "23", "32"), 2.0), law.vocabulary)
         with pytest.raises(NoRoute):
             recorded_spec("test", file, ["10", "11"])
 

@@ -23,6 +23,7 @@ from regdb_runtime.maps.road_map import RoadMap
 from regdb_runtime.observation import EgoState, Footprint, Observation, Track, TurnSignal
 from regdb_runtime.scenes.tellers import surveyed_facts
 from regdb_runtime.trajectory import Trajectory
+from regdb_runtime.worlds.built_in.contacts import find_contacts
 from regdb_runtime.worlds.built_in.ego import EgoSettings, move_ego
 from regdb_runtime.worlds.built_in.signals import Signals
 from regdb_runtime.worlds.eye import build_eye
@@ -113,7 +114,11 @@ class RecordedWorld:
         path = path_along(self._map, self._route).path
         if not path.start <= self.spec.station <= path.end:
             raise WorldError(f"the route is {path.length:.1f} m long; {self.spec.station:g} m is not on it")
-        return ego_at(path, self.spec.station, self.spec.speed)
+        ego = ego_at(path, self.spec.station, self.spec.speed)
+        touched = find_contacts(0.0, ego, self._footprint, self.replay.tracks(self.spec.begins))
+        if touched:
+            raise WorldError(f"at {self.spec.station:g} m of the route stands vehicle {touched[0].other}; begin elsewhere, or at another time")
+        return ego
 
 
 def ego_at(path: ReferencePath, station: float, speed: float) -> EgoState:

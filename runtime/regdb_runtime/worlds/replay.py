@@ -28,8 +28,8 @@ class ReplaySettings:
 
 @dataclass(frozen=True, eq=False)
 class Motion:
-    """One road user over its recording, all (n,): `time` in seconds of the recording, middle of the rectangle, heading (unwrapped), speed along
-    the heading (not negative), acceleration, yaw rate; SI."""
+    """One road user over its recording, all (n,): `time` in seconds of the recording, at every step of it (`step` seconds), middle of the
+    rectangle, heading (unwrapped), speed along the heading (not negative), acceleration, yaw rate; SI."""
 
     obstacle: RecordedObstacle
     time: Floats
@@ -39,6 +39,7 @@ class Motion:
     speed: Floats
     acceleration: Floats
     yaw_rate: Floats
+    step: float
 
     @property
     def begins(self) -> float:
@@ -60,7 +61,7 @@ class Motion:
         x, y, heading, speed, acceleration, yaw = (
             float(np.interp(time, self.time, row)) for row in (self.x, self.y, self.heading, self.speed, self.acceleration, self.yaw_rate)
         )
-        row = int(np.clip(np.searchsorted(self.time, time + 1e-9, side="right") - 1, 0, len(self.time) - 1))
+        row = int(np.clip(np.searchsorted(item.steps, round((time - self.begins) / self.step, 6) + item.steps[0], side="right") - 1, 0, None))
         return Track(
             item.id, item.kind, x, y, math.remainder(heading, math.tau), speed, item.length, item.width, acceleration, yaw,
             item.turn_signals[row] if item.turn_signals else None, item.warning_lights[row] if item.warning_lights else "none",
@@ -92,12 +93,15 @@ def motion_of(item: RecordedObstacle, step: float, settings: ReplaySettings) -> 
     if item.static or len(time) < 2:
         given = np.nan_to_num(item.speed)
         nothing = np.zeros_like(time)
-        return Motion(item, time, item.x, item.y, heading, nothing if item.static else given, nothing, nothing)
-    dx, dy, middle = np.diff(item.x), np.diff(item.y), (heading[1:] + heading[:-1]) / 2
+        return Motion(item, time, item.x, item.y, heading, nothing if item.static else given, nothing, nothing, step)
+    every = np.arange(item.steps[0], item.steps[-1] + 1).astype(np.float64) * step
+    x, y, heading = (np.interp(every, time, row) for row in (item.x, item.y, heading))
+    time = every
+    dx, dy, middle = np.diff(x), np.diff(y), (heading[1:] + heading[:-1]) / 2
     progress = np.concatenate(([0.0], np.cumsum(dx * np.cos(middle) + dy * np.sin(middle))))
     speed = np.maximum(_slopes(time, progress, settings.window), 0.0)
     turning = np.where(speed > MOVING, _slopes(time, heading, settings.window), 0.0)
-    return Motion(item, time, item.x, item.y, heading, speed, _slopes(time, speed, settings.window), turning)
+    return Motion(item, time, x, y, heading, speed, _slopes(time, speed, settings.window), turning, step)
 
 
 def _slopes(time: Floats, values: Floats, window: float) -> Floats:
