@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
 
 import pytest
@@ -10,6 +11,7 @@ from regdb_runtime.perception.evidence import Reading, Statement
 from regdb_runtime.perception.fusion import Fusion, FusionSettings
 from regdb_runtime.perception.questions import answer
 from regdb_runtime.perception.relevance import relevant_facts
+from regdb_runtime.worlds.built_in.build import shipped_vocabulary
 
 from regdb.front import database
 from regdb.vocabulary import Value, Vocabulary
@@ -229,3 +231,34 @@ def test_at_twenty_looks_a_second_two_looks_are_still_apart_and_memory_stays_sma
     assert story.at(200.0, "sign.no_turn_on_red") is False
     settings = FusionSettings()
     assert len(story.fusion._held["sign.no_turn_on_red"]) <= 4 + settings.spare
+
+
+class TestSlips:
+    """A sign that the model invents once does not hold a standing vehicle for ever; one that was seen on the way stays."""
+
+    FACT = "sign.no_turn_on_red"
+
+    def fused(self, said: Sequence[tuple[float, float, bool]]) -> object:
+        """(time, odometer, seen) of each answer -> what is believed at the end."""
+        fusion = Fusion(shipped_vocabulary())
+        for time, travelled, seen in said:
+            statement = Statement(self.FACT, seen, captured=time, frame=f"f{time}", rule="seen")
+            fusion.update(Reading("", (statement,)), travelled, time)
+        time, travelled, _ = said[-1]
+        return fusion.snapshot(time, travelled).facts.get(self.FACT)
+
+    def test_one_slip_among_denials_from_the_same_place_is_outvoted(self) -> None:
+        said = [(k * 0.5, 100.0, k == 3) for k in range(16)]
+        assert self.fused(said[:6]) is True
+        assert self.fused(said) is False
+
+    def test_a_sign_seen_on_the_way_stays_though_it_has_left_the_view(self) -> None:
+        approach = [(k * 0.5, 60.0 + 5.0 * k, True) for k in range(8)]
+        standing = [(4.0 + k * 0.5, 100.0, False) for k in range(40)]
+        assert self.fused(approach + standing) is True
+
+    def test_a_sign_that_is_affirmed_from_there_half_of_the_time_stays(self) -> None:
+        assert self.fused([(k * 0.5, 100.0, k % 2 == 0) for k in range(40)]) is True
+
+    def test_a_moving_vehicle_outvotes_nothing(self) -> None:
+        assert self.fused([(k * 0.5, 100.0 + 4.0 * k, k == 3) for k in range(16)]) is True

@@ -30,7 +30,7 @@ class FusionSettings:
 
     alive: float = 4.5
     ahead: float = 0.05
-    spare: int = 2
+    spare: int = 8
     step_slack: float = 0.02
 
 
@@ -169,9 +169,10 @@ def _by_fact(statements: Sequence[Statement]) -> Mapping[str, Sequence[Statement
     return found
 
 
-def _key(item: Held) -> tuple[float, str, str, str]:
-    statement = item.statement
-    return statement.captured, statement.source, statement.rule, statement.frame
+def _key(item: Held) -> tuple[float, str, str, str, str]:
+    statement, value = item.statement, item.statement.value
+    said = ",".join(sorted(value)) if isinstance(value, frozenset) else str(value)
+    return statement.captured, statement.source, statement.rule, statement.frame, said
 
 
 def _alike(one: Statement, other: Statement) -> bool:

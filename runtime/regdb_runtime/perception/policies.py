@@ -13,6 +13,11 @@ from regdb_runtime.perception.evidence import Source, Statement
 
 EXACT: frozenset[Source] = frozenset(("map", "gnss", "clock"))
 """Sources whose one word is enough where nobody contradicts it: they do not look, they know or measure."""
+_LOOKS: frozenset[Source] = frozenset(("model", "scripted"))
+SAME_PLACE = 1.0
+"""Metres within which two frames show the same."""
+OUTVOTED, OUTVOTED_BY = 6, 4
+"""Denials from one place, and how many to each affirmation, that make the affirmations a slip (3 s of a model that answers twice a second)."""
 CHOICE = "choice"
 """The `rule` of statements that answer a closed question on a crop."""
 _TICK = 1e-9
@@ -57,7 +62,7 @@ def believe(fact: Fact, policy: FusionPolicy, held: Sequence[Held], now: Moment)
     Restrictive values stand from their first statement until they have aged or, where the policy lets them, were replaced by confirmed
     later ones; values that permit need all confirmations, fresh, corroborated where that is declared, with nothing stricter alive.
     """
-    live = tuple(item for item in held if _counts(policy, item, now))
+    live = _without_slips(policy, tuple(item for item in held if _counts(policy, item, now)))
     if fact.kind == "set":
         return _believe_set(fact, policy, live)
     return _settle(fact, policy, _as_chosen(policy, live))
@@ -80,6 +85,25 @@ def _counts(policy: FusionPolicy, item: Held, now: Moment) -> bool:
     statement = item.statement
     strict = statement.certainty == "asserted" and restricts(policy, statement.value)
     return now.time - item.captured >= -_TICK and (policy.holds if strict else policy.fresh).covers(*now.age(item))
+
+
+def _without_slips(policy: FusionPolicy, live: Sequence[Held]) -> Sequence[Held]:
+    """Without what the model said once or twice and denied again and again from the very same place.
+
+    What holds by distance alone would never be forgotten by a vehicle that stands, so one slip of the model would keep it there. A thing
+    that is there is affirmed from that place most of the time; one that has left the view was affirmed from other places, and stays.
+    """
+    if not math.isinf(policy.holds.seconds):
+        return live
+    looked = [item for item in live if item.statement.source in _LOOKS and item.statement.certainty == "asserted"]
+    return [item for item in live if not (item in looked and restricts(policy, item.statement.value) and _is_slip(policy, item, looked))]
+
+
+def _is_slip(policy: FusionPolicy, item: Held, looked: Sequence[Held]) -> bool:
+    here = [other for other in looked if abs(other.travelled - item.travelled) <= SAME_PLACE]
+    affirmed = sum(other.statement.value == item.statement.value for other in here)
+    denied = sum(not restricts(policy, other.statement.value) for other in here)
+    return denied >= OUTVOTED and affirmed * OUTVOTED_BY <= denied
 
 
 def _as_chosen(policy: FusionPolicy, live: Sequence[Held]) -> Sequence[Held]:
