@@ -162,7 +162,10 @@ def test_a_variant_ends_and_does_what_the_law_says(item: Variant) -> None:
     drive = witnessed(item.name)
     assert shortfalls(item.expects, measure(drive.log)) == ()
     assert not drive.world.contacts
-    assert longest_stand(drive) <= 60.0
+    if item.expects.ends == "standstill":
+        assert "not known: " in drive.log.end["reason"]
+    else:
+        assert longest_stand(drive) <= 60.0
     assert passes_at_three_feet(drive)
     assert never_runs_a_red_light(drive)
     flags = {tick["flag"] for tick in drive.log.ticks}
