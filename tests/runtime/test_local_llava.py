@@ -13,7 +13,15 @@ from camera_frames import FRAME
 from regdb_runtime.errors import MissingExtra, ModelError
 from regdb_runtime.perception import local_llava
 from regdb_runtime.perception.describer import Closing, Describer, Frame, Prompt
+from regdb_runtime.perception.fusion import Fusion
 from regdb_runtime.perception.local_llava import PAPER_RATES, LlavaDescriber, LlavaSettings, choose_device, load_arguments, settings_of
+from regdb_runtime.perception.loop import Belief, PerceptionLoop
+from regdb_runtime.perception.loop_core import LoopSettings
+from regdb_runtime.perception.matcher import Matcher
+from regdb_runtime.perception.prompts import PromptMaker
+
+from regdb.states import State, StateMachine, SuperState
+from regdb.vocabulary import Fact, Vocabulary
 
 PROMPT = Prompt("Examine the current driving scenario", max_tokens=8)
 
@@ -43,6 +51,26 @@ def test_a_frame_and_a_prompt_give_words(client: LlavaDescriber) -> None:
     assert found.usage["completion_tokens"] == 8
     assert found.cut, "it wrote as much as it may, and had not come to an end"
     assert client.describe(FRAME, PROMPT, 60.0).text == found.text
+
+
+@needs_torch
+def test_the_loop_runs_on_a_model_of_this_machine(folder: Path) -> None:
+    """Frame, prompt of the state, model, matcher, fusion, snapshot; random weights say nothing worth knowing, but they say it as a model."""
+    vocabulary = Vocabulary([Fact("sign.stop", "boolean", phrases={"true": ("stop", "sign")})])
+    states = [State("lane_following", "go_straight", prompt=PROMPT.text)]
+    prompts = PromptMaker(StateMachine([SuperState("lane_following")], states, "lane_following"), vocabulary)
+    belief = Belief(Fusion(vocabulary), Matcher(vocabulary), vocabulary)
+    client, end = LlavaDescriber(LlavaSettings(str(folder), quantization="none", device="cpu")), time.monotonic() + 60.0
+    with PerceptionLoop(client, prompts, belief, lambda: FRAME.captured, LoopSettings(deadline=30.0)) as loop:
+        loop.offer(FRAME)
+        while loop.last_answer is None and time.monotonic() < end:
+            time.sleep(0.01)
+        found = loop.snapshot()
+        assert loop.last_answer is not None
+        call, description = loop.last_answer
+    assert (call.prompt.text, description.failure, loop.provenance, found.degraded) == (PROMPT.text, "", "live", "")
+    assert found.facts.get("sign.stop", False) is ("stop" in description.text or "sign" in description.text)
+    assert all(item.source == "model" for items in found.evidence.values() for item in items)
 
 
 @needs_torch
