@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import json
 import random
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 
 from regdb.vocabulary import Fact, Value, Vocabulary
@@ -21,8 +21,8 @@ Truth = Callable[[Frame], Mapping[str, Value]]
 
 @dataclass(frozen=True, slots=True)
 class ErrorRates:
-    """Shares of answers that are wrong. `miss`: something there is not mentioned; `invent`: something absent is reported; `confuse`: a look-alike
-    (the vocabulary's confusables) is reported in place of what is there; `fail`: no answer at all."""
+    """Shares. `miss`: of things there, not mentioned; `confuse`: of things there, told as a look-alike (the vocabulary's confusables);
+    `invent`: of answers, which report one thing that is absent; `fail`: of questions, which get no answer."""
 
     miss: float = 0.0
     invent: float = 0.0
@@ -71,9 +71,11 @@ class StubModel:
         fact = self._vocabulary.facts.get(name)
         return fact is not None and bool(fact.phrases) and fact.kind in {"boolean", "enumeration"}
 
-    def _wrong(self, truth: Mapping[str, Value], names: Iterable[str], chance: random.Random) -> dict[str, Value]:
+    def _wrong(self, truth: Mapping[str, Value], names: Sequence[str], chance: random.Random) -> dict[str, Value]:
         """The truth as it is said: every fact draws its error, whether or not it makes one, so that rates do not shift the draws."""
         said: dict[str, Value] = {}
+        absent = sorted(name for name in names if truth[name] is False)
+        invented = chance.choice(absent) if chance.random() < self.errors.invent and absent else ""
         for name in names:
             fact, value, draw = self._vocabulary.fact(name), truth[name], chance.random()
             there = value not in (False, NOTHING)
@@ -86,10 +88,7 @@ class StubModel:
                 if fact.kind == "boolean" and chance.random() < 0.5:
                     said[name] = False
                 continue
-            if not there and fact.kind == "boolean" and draw < self.errors.invent:
-                said[name] = True
-                continue
-            said[name] = value
+            said[name] = True if name == invented else value
         return said
 
     def _look_alike(self, fact: Fact, chance: random.Random) -> str | None:
