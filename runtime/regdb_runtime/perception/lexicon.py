@@ -206,7 +206,7 @@ class Lexicon:
                     if word in BREAKS or word in solid:
                         break
             word, place = sequence[at], kept[at]
-            if place - last > 1 and words[place - 1] in ARTICLES and not _glued(words[last], word):
+            if place - last > 1 and words[place - 1] in ARTICLES and not _glued(words[place - 2], word):
                 continue
             following = node.get(word)
             if following is not None:
