@@ -201,8 +201,8 @@ def never_runs_a_red_light(drive: Witnessed) -> bool:
     if not lines:
         return True
     light = lines[0]["lights"][0]
-    crossing = next(item for item in drive.instants if before_line(drive, item) < 0.0)
-    if crossing.lights[light] == "green":
+    crossing = next((item for item in drive.instants if before_line(drive, item) < 0.0), None)
+    if crossing is None or crossing.lights[light] == "green":
         return True
     stood = [item for item in drive.instants if item.time < crossing.time and item.ego.speed < 0.1 and 0.0 <= before_line(drive, item) <= 2.0]
     return variant(drive.log.run["variant"]).expects.crosses == "red" and len(stood) >= 10
