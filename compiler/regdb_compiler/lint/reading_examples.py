@@ -33,6 +33,7 @@ READING_EXAMPLES: dict[str, str] = {
     "R408": "facts: {fog: {type: boolean, source: perception, meaning: Fog.}}\ndefinitions: [{name: fog, when: sign.school}]",
     "R410": "facts: {fog: {type: quantity, source: perception, meaning: Fog.}}",
     "R411": "facts: {sign.school: {type: boolean, source: perception, meaning: A sign.}}",
+    "R413": "facts: {fog.seen: {type: boolean, source: perception, meaning: Fog., fusion: quick}}",
     "R501": "versions: [{effective: 2000-01-01}, {effective: 2010-01-01}]",
     "R502": "versions: [{effective: 2010-01-01, until: 2000-01-01}]",
     "R503": "regulations: [{id: a, effective: 1990-01-01}]",
