@@ -49,7 +49,8 @@ def test_standard_input_and_a_text_without_facts() -> None:
 
 def test_refusals_are_one_sentence(tmp_path: Path) -> None:
     (tmp_path / "x.bin").write_bytes(b"\xff\xfe\x00")
-    for arguments in (("   ",), ("a", "--format", "xml"), ("a", "--file", "x.bin"), ("--file", "none.txt"), ("--file", "x.bin"), ("a", "--db", "x.bin")):
+    wrong = (("   ",), ("a", "--format", "xml"), ("a", "--file", "x.bin"), ("--file", "none.txt"), ("--file", "x.bin"), ("a", "--db", "x.bin"))
+    for arguments in wrong:
         found = match(*arguments, folder=tmp_path)
         assert (found.returncode, found.stdout) == (2, ""), arguments
         assert found.stderr.startswith("error: ")

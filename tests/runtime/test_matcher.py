@@ -1,15 +1,15 @@
 """The matcher's places, relations and context: spans into the text as received, what is set aside and why, what entails what."""
 
 import pytest
-
-from regdb.front import database
-from regdb.vocabulary import Fact, Value, Vocabulary
 from regdb_runtime.database import RegulationDatabase
 from regdb_runtime.perception.evidence import Reading
 from regdb_runtime.perception.lexicon import PhraseError
 from regdb_runtime.perception.matcher import Matcher
 from regdb_runtime.perception.normalise import normalise
 from regdb_runtime.perception.sentences import sentences
+
+from regdb.front import database
+from regdb.vocabulary import Fact, Value, Vocabulary
 
 
 @pytest.fixture(scope="module")
@@ -27,7 +27,8 @@ def asserted(reading: Reading) -> dict[str, Value]:
 
 
 @pytest.mark.parametrize("text", [
-    "A “stop sign” stands here.", "Ａ ｓｔｏｐ ｓｉｇｎ stands here.", "🚦 ½ mile: a **stop sign**!", "A stop\u2011sign.", "• a stop\u00a0sign", "A STOP SIGN",
+    "A “stop sign” stands here.", "A \uff53\uff54\uff4f\uff50 \uff53\uff49\uff47\uff4e stands here.",
+    "🚦 ½ mile: a **stop sign**!", "A stop\u2011sign.", "• a stop\u00a0sign", "A STOP SIGN",
 ])  # fmt: skip
 def test_spans_lie_in_the_text_as_received(matcher: Matcher, text: str) -> None:
     (found,) = words(matcher.read(text), "sign.stop")
@@ -77,7 +78,8 @@ def test_the_longest_phrase_wins_and_a_swallowing_one_says_nothing(matcher: Matc
 
 @pytest.mark.parametrize(("text", "colors"), [
     ("red and green lights", ["red", "green"]), ("It turned yellow, then red.", []), ("The light turned yellow, then red.", ["red"]),
-    ("There is a traffic light. It is green.", ["green"]), ("The red car waits at the light.", []), ("The light is red or yellow.", ["red", "yellow"]),
+    ("There is a traffic light. It is green.", ["green"]), ("The red car waits at the light.", []),
+    ("The light is red or yellow.", ["red", "yellow"]),
 ])  # fmt: skip
 def test_colours_belong_to_lights(matcher: Matcher, text: str, colors: list[str]) -> None:
     assert [item.value for item in matcher.read(text).statements if item.fact == "signal.color"] == colors
@@ -104,6 +106,6 @@ def test_statements_stand_in_the_order_of_the_text(matcher: Matcher) -> None:
 def test_a_vocabulary_of_ones_own(matcher: Matcher) -> None:
     own = Vocabulary([Fact("cow.ahead", "boolean", phrases={"": ("{cow} ~ road",)})], words={"cow": ("cow", "highland cattle")})
     assert asserted(Matcher(own).read("Highland cattle stand on the road.")) == {"cow.ahead": True}
-    with pytest.raises(PhraseError, match="{cow}"):
+    with pytest.raises(PhraseError, match="cow"):
         Matcher(Vocabulary([Fact("cow.ahead", "boolean", phrases={"": ("{cow} ~ road",)})]))
     assert matcher.vocabulary.words["swallow"]

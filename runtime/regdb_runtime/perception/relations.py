@@ -43,7 +43,7 @@ class Shown:
 
 @dataclass(frozen=True, slots=True)
 class LightWords:
-    """The vocabulary's word classes that lights need: heads, arrows, colours by word, other things that have colours or lamps, words beside warning lamps."""
+    """The vocabulary's word classes that lights need: heads, arrows, colours by word, other things with colours, words near warning lamps."""
 
     heads: frozenset[str]
     arrows: frozenset[str]
@@ -55,7 +55,8 @@ class LightWords:
     def of(cls, lexicon: Lexicon) -> LightWords:
         """From the classes whose names begin with `light_`."""
         colors = {word: color for color in ("red", "yellow", "green") for word in lexicon.class_of(f"light_{color}")}
-        return cls(lexicon.class_of("light_head"), lexicon.class_of("light_arrow"), colors, lexicon.class_of("light_thing"), lexicon.class_of("light_warning"))
+        heads, arrows, things, warning = (lexicon.class_of(f"light_{name}") for name in ("head", "arrow", "thing", "warning"))
+        return cls(heads, arrows, colors, things, warning)
 
 
 def lights(sentence: Sentence, words: LightWords, swallowed: int, before: bool) -> Iterator[Shown]:
@@ -69,7 +70,8 @@ def lights(sentence: Sentence, words: LightWords, swallowed: int, before: bool) 
         return
     origin = _waiting_from(said, words)
     if origin >= 0 and heads:
-        yield Shown(words.colors[said[origin]], any(word in words.arrows for word in said), flashing=False, mask=1 << origin | 1 << heads[0], anchor=origin, still=True)
+        mask = 1 << origin | 1 << heads[0]
+        yield Shown(words.colors[said[origin]], arrow=False, flashing=False, mask=mask, anchor=origin, still=True)
         return
     colors = [at for at, word in enumerate(said) if word in words.colors and not swallowed >> at & 1]
     if not colors:
@@ -125,9 +127,7 @@ def _left(said: list[str], head: int, words: LightWords) -> Iterator[int]:
         if word in words.colors:
             colored = True
             yield at
-        elif word in ARTICLES and not colored:
-            return
-        elif word not in _LEFT_WORDS and word not in FILLERS:
+        elif (word in ARTICLES and not colored) or (word not in _LEFT_WORDS and word not in FILLERS):
             return
         at -= 1
 
@@ -141,9 +141,8 @@ def _right(said: list[str], head: int, following: int, words: LightWords) -> Ite
         if word in ";!?" or (found and word in _NOT_YET):
             break
         if word in words.colors:
-            if (at > head + 1 and not linked and said[at - 1] not in (":", ",", "(", "-")) or _colors_another(said, at, words):
-                break
-            if astray and not changing:
+            apart = at > head + 1 and not linked and said[at - 1] not in (":", ",", "(", "-")
+            if apart or (astray and not changing) or _colors_another(said, at, words):
                 break
             if changing:
                 found.clear()
