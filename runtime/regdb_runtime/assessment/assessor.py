@@ -13,6 +13,7 @@ from regdb_runtime.assessment.alike import Distinctions, Distinguished
 from regdb_runtime.assessment.assessed import LAWFUL, NO_PLAN, RANKS, UNCERTAIN, UNLAWFUL, Assessed, Violation
 from regdb_runtime.assessment.caps import Caps
 from regdb_runtime.assessment.cross_section import Roads
+from regdb_runtime.assessment.halts import Halts
 from regdb_runtime.assessment.judge import Judged, Judging
 from regdb_runtime.assessment.plan_facts import BESIDE, Measuring, measure, measuring
 from regdb_runtime.assessment.rejections import Fallen
@@ -24,7 +25,7 @@ from regdb_runtime.maneuver import Maneuver
 from regdb_runtime.maps.road_map import RoadMap
 from regdb_runtime.observation import Footprint, Observation
 from regdb_runtime.planning.contacts import Sweeper
-from regdb_runtime.planning.goal import SpeedCap
+from regdb_runtime.planning.goal import SpeedCap, StopPoint
 from regdb_runtime.planning.prediction import Predictions
 from regdb_runtime.scenes.stretch import Stretch
 from regdb_runtime.trajectory import Candidates
@@ -46,10 +47,15 @@ class Assessor:
         self._roads = Roads(road_map) if road_map is not None else None
         self._distinguished = Distinguished()
         self._caps = Caps(self.settings, interpretation, self._distinguished)
+        self._halts = Halts(self._distinguished)
 
     def caps(self, maneuver: Maneuver, stretches: Sequence[Stretch]) -> tuple[SpeedCap, ...]:
         """Speed limits along the path: those in force, and by the strict reading of what is unknown those that may be."""
         return self._caps.of(maneuver, stretches, shared_facts(maneuver, self._roads))
+
+    def halt(self, maneuver: Maneuver, stretches: Sequence[Stretch], speed: float) -> StopPoint | None:
+        """The nearest place ahead that the law forbids to pass now and that can be stopped before from a speed (m/s), None without one."""
+        return self._halts.of(maneuver, stretches, shared_facts(maneuver, self._roads), speed)
 
     def best(
         self, maneuver: Maneuver, stretches: Sequence[Stretch], candidates: Candidates, order: ArrayLike, costs: ArrayLike,

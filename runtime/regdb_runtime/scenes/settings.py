@@ -81,6 +81,10 @@ class SceneSettings:
     """Room wanted behind the vehicle beyond the junction, besides its length."""
     pass_room: float = 10.0
     """Room before and after what is passed, for the estimate of where a pass ends."""
+    bus_stands: float = 0.5
+    """A bus slower than this (m/s) is the stopped one of which the eye tells: trackers report small speeds of what stands."""
+    before_bus: float = 1.0
+    """Where the stopped school bus is beside the vehicle, or is not tracked, a plan passes it that goes farther than this."""
     border_step: float = 1.0
     """Distance of the points at which zones are looked for along a lane; borders are then found to a centimetre."""
     place: str | None = None

@@ -148,12 +148,18 @@ class Scenes:
         sight = measures.get("speed.unsafe_for_conditions")
         if sight is not None and view.look.judged("speed.unsafe_for_conditions", {"speed": fastest, **sight}) is False:
             roles["speed.unsafe_for_conditions"] = False  # safe at the highest speed any plan may reach; else each plan's own speed decides
-        bus = view.around.front + 1.0 if encoded.scene.facts.get("school_bus.ahead") is True else None
+        bus = self._bus(view) if encoded.scene.facts.get("school_bus.ahead") is True else None
         place = part.piece.jurisdiction or self._place
         return Stretch(
             part.start, part.end, place, part.clock, self.view(place, part.clock), encoded.scene, encoded.prepared, roles, part.lane, part.stage,
             line if part.stage == "approach" else None, on.crosswalk, None if part.rail is None else part.rail_station, bus, measures,
         )  # fmt: skip
+
+    def _bus(self, view: Viewpoint) -> float:
+        """The station past which a plan passes the school bus: its near end, met or overtaken; at once beside it or where it is not tracked."""
+        around = view.around
+        found = [item.rear for item in around.others if item.track.kind == "bus" and item.track.speed < self.settings.bus_stands]
+        return min((station for station in found if station > around.front), default=around.front + self.settings.before_bus)
 
     def view(self, place: str, clock: datetime.datetime) -> View:
         """The law of a place on the day of a clock. Raises RequestError for a place that is not in the database."""

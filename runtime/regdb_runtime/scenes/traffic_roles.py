@@ -89,12 +89,12 @@ def _two_wheelers(look: Look) -> dict[str, Value]:
 
 def _stationary(look: Look) -> dict[str, Value]:
     """The nearest vehicle that stands with warning lights or on duty immediately beside the lane of the path, not yet passed."""
-    reach = look.settings.beside_lane
     right, left = look.path_strip
+    beyond_right, beyond_left = _edges_beside(look)
     for item in look.around.others:
         told = item.track.warning_lights != "none" or item.track.hazard_kind != "none"
         stands = item.is_motor and look.stands(item.track.speed)
-        near = not item.overlaps(right + 0.3, left - 0.3) and item.overlaps(right - reach, left + reach)
+        near = not item.overlaps(right + 0.3, left - 0.3) and item.overlaps(beyond_right, beyond_left)
         if told and stands and near and item.front > look.around.rear and item.rear - look.around.front <= look.ranges.vehicles:
             kind = item.track.hazard_kind if item.track.hazard_kind != "none" else "other_with_hazards"
             return {
@@ -102,6 +102,16 @@ def _stationary(look: Look) -> dict[str, Value]:
                 "stationary_hazard_vehicle.lights": item.track.warning_lights,
             }  # fmt: skip
     return {"stationary_hazard_vehicle.beside": False, "stationary_hazard_vehicle.kind": "none", "stationary_hazard_vehicle.lights": "none"}
+
+
+def _edges_beside(look: Look) -> Strip:
+    """How far what stands immediately beside the path's lane may begin: within the next lane, else within a lane's width of the edge."""
+    (right, left), reach = look.path_strip, look.settings.beside_lane
+    if look.target is not None:  # the path runs along the target: the lane that is left lies between it and the edge
+        own_right, own_left = look.own_strip
+        return (own_right, left + reach) if own_left <= right + 0.5 else (right - reach, own_left)
+    sides = {side: found[1] for side in SIDES if (found := look.strip_beside(side)) is not None and is_for_traffic(found[0])}
+    return sides["right"][0] if "right" in sides else right - reach, sides["left"][1] if "left" in sides else left + reach
 
 
 def _emergency(look: Look) -> dict[str, Value]:

@@ -14,7 +14,7 @@ from regdb_runtime.decision import CandidateReport, Rejection
 from regdb_runtime.maneuver import Maneuver
 from regdb_runtime.observation import TurnSignal
 from regdb_runtime.planning.cost import CostTerms, MotionCosts, weigh
-from regdb_runtime.planning.goal import SpeedCap
+from regdb_runtime.planning.goal import SpeedCap, StopPoint
 from regdb_runtime.planning.kinematic_limits import UNITS, Feasibility
 from regdb_runtime.scenes.stretches import Scenes
 from regdb_runtime.strategy.sampling import Moment, Sampler
@@ -62,7 +62,8 @@ class Evaluator:
         if signalled:
             stretches = tuple(replace(item, roles={**item.roles, **_signalled(maneuver.turn_signal)}) for item in stretches)
         caps = self.assessor.caps(maneuver, stretches)
-        maneuver = replace(maneuver, goal=replace(maneuver.goal, caps=(*maneuver.goal.caps, *caps)))
+        stop = _nearer(maneuver.goal.stop, self.assessor.halt(maneuver, stretches, moment.observation.ego.speed))
+        maneuver = replace(maneuver, goal=replace(maneuver.goal, caps=(*maneuver.goal.caps, *caps), stop=stop))
         plans = self.sampler.plans(maneuver, moment)
         assessed = self.assessor.best(
             maneuver, stretches, plans.candidates, plans.order, plans.costs.weighted, moment.observation, moment.predictions,
@@ -103,6 +104,13 @@ def _without_plan(maneuver: Maneuver, rejections: Sequence[Rejection], sampled: 
     return CandidateReport(
         maneuver.current, maneuver.next, NO_PLAN, None, None, None, maneuver.turn_signal, sampled=sampled, rejections=tuple(rejections)
     )  # fmt: skip
+
+
+def _nearer(own: StopPoint | None, asked: StopPoint | None) -> StopPoint | None:
+    """Of the manoeuvre's own stop and the law's the one that comes first."""
+    if own is None or asked is None:
+        return own or asked
+    return asked if asked.station < own.station else own
 
 
 def _infeasible(found: Feasibility) -> Iterator[Rejection]:

@@ -82,7 +82,8 @@ def _through(picture: Picture, step: Step, junction: Junction, commits: bool) ->
     settings = picture.settings
     if commits and not _inside(picture, junction):
         signals = picture.observation.signals
-        if must_stop_on_yellow(junction, signals, picture.front, picture.speed, settings):
+        stopping = picture.memory.stop.phase in ("approach", "held", "check")
+        if must_stop_on_yellow(junction, signals, picture.front, picture.speed, settings, stopping):
             return refuse(picture, step, "yellow")
         if picture.memory.stop.phase == "held":
             return refuse(picture, step, "check")

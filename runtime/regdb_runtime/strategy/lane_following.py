@@ -1,4 +1,4 @@
-"""Manoeuvres between intersections: keep the lane, follow, signal for and make the changes of lane that the route needs."""
+"""Manoeuvres between intersections: keep the lane, follow, signal for and make the changes of lane that the route, or what stands beside the lane, needs."""
 
 from __future__ import annotations
 
@@ -58,7 +58,7 @@ def slow_down(picture: Picture, step: Step) -> Maneuver:
 
 
 def prepare(side: Literal["left", "right"]) -> Build:
-    """Signal and look for a gap: only for a change that the route needs."""
+    """Signal and look for a gap: only for a change that the route needs, or that gives room to what stands beside the lane."""
 
     def build(picture: Picture, step: Step) -> Maneuver:
         refused = _no_change(picture, side)
@@ -144,14 +144,18 @@ def _go_on(picture: Picture, step: Step, side: Literal["left", "right"]) -> Mane
 
 def _no_change(picture: Picture, side: Literal["left", "right"]) -> str:
     """Why no change of lane to a side is made, empty when it is needed now."""
-    if picture.need.side != side or picture.inside:
+    if side not in (picture.need.side, picture.makes_room) or picture.inside:
         return "route"
     if picture.beside(side) is None:
         return "no_lane"
+    if picture.need.side != side:
+        return ""
     return "far" if picture.need.room > picture.settings.lane_change_distance * picture.need.changes else ""
 
 
 def _needed(picture: Picture) -> tuple[tuple[str, float], ...]:
     settings = picture.settings
+    if picture.need.side is None:
+        return (("makes_room", -settings.give_room),)
     near = 1.0 - min(max(picture.need.room, 0.0) / (settings.lane_change_distance * max(picture.need.changes, 1)), 1.0)
     return (("lane_needed", -settings.need_lane * (0.25 + 0.75 * near)),)

@@ -88,6 +88,24 @@ class Picture:
         return Need(abs(count), "left" if count > 0 else "right", span.end - self.front)
 
     @cached_property
+    def makes_room(self) -> Literal["left", "right"] | None:
+        """The side to change lanes to, away from what stands beside the lane ahead with its warning lights on; None without.
+
+        Not where the route needs a change, nor where what stands is nearer than a change takes, nor where the junction comes before it.
+        """
+        if self.need.side is not None or self.handling:
+            return None
+        half, reach = float(self.here.widths.min()) / 2, self.settings.stands_beside
+        for item in self.placed:
+            if item.track.warning_lights == "none" or item.track.speed > 0.5 or not 0.0 < item.rear - self.front <= self.settings.lane_change_distance:
+                continue
+            if item.left < half and -half - reach < item.left <= -half + 0.3:
+                return "left"
+            if item.right > -half and half - 0.3 <= item.right < half + reach:
+                return "right"
+        return None
+
+    @cached_property
     def handling(self) -> bool:
         """Whether the intersection ahead is near enough to be handled; with hysteresis."""
         if self.junction is None:

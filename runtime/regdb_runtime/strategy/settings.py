@@ -40,6 +40,8 @@ class StrategySettings:
     """m/s2; what is not known about the junction (whether its far side is free, what a light shows) may come to be known until this is needed."""
     yellow_braking: float = 3.0
     """m/s2; on yellow the vehicle stops wherever this reaches the line (ITE's signal timing reckons with 10 ft/s2)."""
+    yellow_stopping: float = 6.0
+    """m/s2; a stop begun on yellow is given up only where not even this reaches the line any more."""
 
     stop_slack: float = 2.0
     """Metres short of the line within which a stop counts as at it (the paper's plateau, FEATURES H05)."""
@@ -93,6 +95,11 @@ class StrategySettings:
     lane_change_gap_behind: float = 6.0
     """Metres to others in the target lane below which no change is begun; what is safe beyond that, law and prediction decide."""
 
+    stands_beside: float = 3.7
+    """Metres from the lane's edge (a lane's width, 12 ft) within which a vehicle that stands with its warning lights on is given room by a change of
+    lane, where there is one; whether that is a duty, the law says."""
+    give_room: float = 10.0
+    """What that change is worth: courtesy where it is no duty."""
     open_gap: float = 2.0
     """m/s by which the vehicle goes slower than who keeps it from a change of lane that the route needs."""
     reroute_distance: float = 25.0

@@ -78,12 +78,15 @@ def waiting_distance(speed: float, settings: StrategySettings) -> float:
 
 
 def must_stop_on_yellow(
-    junction: Junction, signals: Mapping[str, Sequence[Indication]], front: float, speed: float, settings: StrategySettings
+    junction: Junction, signals: Mapping[str, Sequence[Indication]], front: float, speed: float, settings: StrategySettings, stopping: bool = False
 ) -> bool:
-    """Whether a yellow is shown and the line still lies beyond what prudent braking needs: to go on would gamble on the red that follows."""
+    """Whether a yellow is shown and the line still lies beyond what prudent braking needs: to go on would gamble on the red that follows.
+
+    A stop that has begun (`stopping`) is kept as long as hard braking still reaches the line: who brakes and then goes on enters on red.
+    """
     shown = [item for light in junction.lights for item in signals.get(light, ())]
     if not any(item.color == "yellow" and not item.flashing for item in shown):
         return False
     if any(item.color == "green" for item in shown):
         return False
-    return junction.stop_station - front >= speed * speed / (2 * settings.yellow_braking)
+    return junction.stop_station - front >= speed * speed / (2 * (settings.yellow_stopping if stopping else settings.yellow_braking))

@@ -45,6 +45,11 @@ class Approach:
         return float(self.outgoing.headings[0]) + math.pi
 
     @property
+    def marks_crosswalk(self) -> bool:
+        """Whether a crosswalk is marked across the arm."""
+        return self.control != "none" if self.arm.crosswalk is None else self.arm.crosswalk
+
+    @property
     def point(self) -> Floats:
         """The road's middle where the junction begins."""
         side = self.incoming
@@ -250,7 +255,7 @@ def _finish_lane(streets: Streets, lane_id: str, approach: Approach, lights: tup
     lane = streets.lanes[lane_id]
     line = None
     if approach.control != "none" and approach.arm.stop_line:
-        back = CROSSWALK[0] + LINE_BEFORE_CROSSWALK if approach.arm.crosswalk else LINE_BEFORE_END
+        back = CROSSWALK[0] + LINE_BEFORE_CROSSWALK if approach.marks_crosswalk else LINE_BEFORE_END
         left, right = _back_from_end(lane.left_line, back), _back_from_end(lane.right_line, back)
         line = StopLine(f"{lane_id}.stop_line", left, right, marked=True, lights=lights, signs=signs)
     facts: dict[str, Value] = {**lane.facts, "lane.turns": turns} if turns else dict(lane.facts)
@@ -303,7 +308,7 @@ def _end_pose(line: Floats, *, last: bool) -> tuple[float, float, float]:
 
 def _crosswalk(spec: JunctionSpec, approach: Approach) -> list[Crosswalk]:
     """The marked crosswalk over one arm, kerb to kerb; named by the side of the junction it lies on."""
-    if not approach.arm.crosswalk or approach.control == "none":
+    if not approach.marks_crosswalk:
         return []
     ahead = np.array([math.cos(approach.heading), math.sin(approach.heading)])
     left = np.array([-ahead[1], ahead[0]])

@@ -10,7 +10,7 @@ import numpy as np
 from regdb.situation import quiet_facts
 from regdb.vocabulary import Vocabulary
 from regdb_runtime.errors import WorldError
-from regdb_runtime.maps.road_map import Floats, RoadMap, Sign, Turn, Zone
+from regdb_runtime.maps.road_map import Floats, Hours, RoadMap, Sign, Turn, Zone
 from regdb_runtime.scenes.tellers import surveyed_facts
 from regdb_runtime.worlds.junction_builder import build_junctions
 from regdb_runtime.worlds.road_spec import SignSpec, StreetsSpec, ZoneSpec
@@ -36,7 +36,8 @@ def build_zone(streets: Streets, spec: ZoneSpec) -> Zone:
     if spec.distance_fact is not None and (spec.landmark is None or spec.distance_fact not in streets.vocabulary):
         raise WorldError(f"zone {spec.id!r}: {spec.distance_fact} needs a landmark and a fact of the vocabulary")
     facts = streets.read(spec.facts, f"zone {spec.id}")
-    return Zone(spec.id, spec.kind, polygon, facts, spec.jurisdiction, spec.distance_fact, spec.landmark)
+    hours = tuple(Hours(start, end) for start, end in spec.hours)
+    return Zone(spec.id, spec.kind, polygon, facts, spec.jurisdiction, spec.distance_fact, spec.landmark, hours)
 
 
 def _along(streets: Streets, spec: ZoneSpec) -> Floats:

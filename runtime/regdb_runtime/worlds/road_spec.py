@@ -60,7 +60,8 @@ class Arm:
     """One road's end at a junction. `arrows`: turns with an arrow head of their own besides the circular one.
 
     `allowed`: turns that this arm's traffic may make; empty: all that the junction's shape offers. `right_turn_lane`/`left_turn_lane`: the
-    outermost lane is for that turn alone. `control` overrides the junction's for this arm (`none` beside a `stop`: the main road).
+    outermost lane is for that turn alone. `crosswalk`: whether one is marked; None: where something controls the arm. `control` overrides the
+    junction's for this arm (`none` beside a `stop`: the main road).
     """
 
     road: str
@@ -69,7 +70,7 @@ class Arm:
     allowed: tuple[Turn, ...] = ()
     right_turn_lane: bool = False
     left_turn_lane: bool = False
-    crosswalk: bool = True
+    crosswalk: bool | None = None
     stop_line: bool = True
     control: Control | None = None
 
@@ -115,7 +116,8 @@ class SignSpec:
 class ZoneSpec:
     """A zone along a road from one station of its middle line to another, over the whole width and `margin` metres beyond, or a `polygon`.
 
-    `facts` as people write them. `landmark`: the place that `distance_fact` measures the distance to.
+    `facts` as people write them. `landmark`: the place that `distance_fact` measures the distance to. `hours`: seconds of the local day from and
+    to which the zone is one; empty: always.
     """
 
     id: str
@@ -129,6 +131,7 @@ class ZoneSpec:
     jurisdiction: str | None = None
     distance_fact: str | None = None
     landmark: tuple[float, float] | None = None
+    hours: tuple[tuple[int, int], ...] = ()
 
 
 @dataclass(frozen=True)

@@ -149,9 +149,9 @@ class BuiltInWorld:
             if table.inner:
                 ahead = (table.x[0] - x) * math.cos(table.heading[0]) + (table.y[0] - y) * math.sin(table.heading[0])
                 if 0.0 < ahead < 80.0 and math.hypot(table.x[0] - x, table.y[0] - y) < 80.0:
-                    if self.ego.speed > 0.3 or ahead > 12.0:
+                    if ahead > 12.0:
                         self._ego_since = None
-                    elif self._ego_since is None:
+                    elif self._ego_since is None and self.ego.speed <= 0.3:  # and kept while it moves off: it came when it came
                         self._ego_since = self.time
                     return EgoAhead(name, ahead, self._ego_since)
         self._ego_since = None
