@@ -96,13 +96,16 @@ def _without_slips(policy: FusionPolicy, live: Sequence[Held]) -> Sequence[Held]
     if not math.isinf(policy.holds.seconds):
         return live
     looked = [item for item in live if item.statement.source in _LOOKS and item.statement.certainty == "asserted"]
-    return [item for item in live if not (item in looked and restricts(policy, item.statement.value) and _is_slip(policy, item, looked))]
+    denials = [item.travelled for item in looked if not restricts(policy, item.statement.value)]
+    if len(denials) < OUTVOTED:
+        return live
+    slips = {id(item) for item in looked if restricts(policy, item.statement.value) and _is_slip(item, looked, denials)}
+    return [item for item in live if id(item) not in slips] if slips else live
 
 
-def _is_slip(policy: FusionPolicy, item: Held, looked: Sequence[Held]) -> bool:
-    here = [other for other in looked if abs(other.travelled - item.travelled) <= SAME_PLACE]
-    affirmed = sum(other.statement.value == item.statement.value for other in here)
-    denied = sum(not restricts(policy, other.statement.value) for other in here)
+def _is_slip(item: Held, looked: Sequence[Held], denials: Sequence[float]) -> bool:
+    denied = sum(abs(place - item.travelled) <= SAME_PLACE for place in denials)
+    affirmed = sum(other.statement.value == item.statement.value and abs(other.travelled - item.travelled) <= SAME_PLACE for other in looked)
     return denied >= OUTVOTED and affirmed * OUTVOTED_BY <= denied
 
 
