@@ -19,7 +19,7 @@ class Maneuver:
     `lane`: where the vehicle is now; `target_lane`: where it would go, None to stay. `passes`: the track to be passed. `junction`: the next one
     on the path within the horizon, None without. `refused`: why it cannot be done at all (`route`, `no_lane` …), empty when it can.
     `via`: the micro-steps between the state now in force and `current`, all within one tick and without motion. `commits`: the manoeuvre is to
-    enter the junction, so it is judged as entering it (`plan.enters_intersection`) wherever its sampled horizon ends. `may_wait`: it is far enough from
+    enter the junction, so it is judged as entering it (`plan.enters_intersection`) wherever its horizon ends. `may_wait`: it is far enough from
     the line for what is unknown there to become known: then it is judged by its plans alone, as if it did not commit. `biases`: what the
     strategist adds to C_distance, by name (`lane_needed`, `promise`, `switch`), in metres; never to legality.
     `prepares`: the manoeuvre that this one only gets ready for: where that one would not be lawful once signalled, this one falls out too.

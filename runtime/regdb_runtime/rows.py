@@ -43,7 +43,7 @@ def read_meta(tables: Tables) -> dict[str, str]:
 def read_vocabulary(tables: Tables) -> Vocabulary:
     """Every fact and attribute. Raises DatabaseDamaged."""
     lexicon = {(kind, name): tuple(json.loads(entries)) for kind, name, entries in _lexicon(tables)}
-    facts = [_fact(*row, lexicon.get(("entails", row[0]), ())) for row in tables["fact"].select(*_FACT)]
+    facts = [_fact(*row, entails=lexicon.get(("entails", row[0]), ())) for row in tables["fact"].select(*_FACT)]
     policies = read_fusion(tables)
     facts = [replace(fact, fusion=policies[fact.name]) if fact.name in policies else fact for fact in facts]
     attributes = tables["attribute"].select("name", "kind", "fact", "direction", "meaning")

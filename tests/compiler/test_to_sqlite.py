@@ -191,7 +191,8 @@ def test_the_order_in_which_files_are_read_changes_nothing(small: Build, databas
     for items in (facts, sections, places, attributes):
         mixed.shuffle(items)
     shuffled = replace(
-        corpus, sections=tuple(sections), tree=type(corpus.tree)(places), vocabulary=type(corpus.vocabulary)(facts, attributes, corpus.vocabulary.words)
+        corpus, sections=tuple(sections), tree=type(corpus.tree)(places),
+        vocabulary=type(corpus.vocabulary)(facts, attributes, corpus.vocabulary.words)
     )
     from regdb_compiler.authority import Authority
     from regdb_compiler.precedence import find_targets

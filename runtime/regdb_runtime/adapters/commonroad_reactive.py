@@ -77,8 +77,8 @@ def plan_of(sample: Any) -> Trajectory:
     cartesian, dt = sample.cartesian, float(sample.dt)
     rows: list[Floats] = [np.asarray(getattr(cartesian, name), dtype=np.float64) for name in ("x", "y", "theta", "v", "a", "kappa")]
     x, y, heading, speed, acceleration, curvature = rows
-    time: Floats = np.arange(len(x)) * dt
-    jerk: Floats = np.asarray(np.gradient(acceleration, dt), dtype=np.float64) if len(x) > 1 else np.zeros_like(x)
+    time = np.arange(len(x), dtype=np.float64) * dt
+    jerk = np.asarray(np.gradient(acceleration, dt), dtype=np.float64) if len(x) > 1 else np.zeros_like(x)
     curvilinear = getattr(sample, "curvilinear", None)
     station = np.zeros_like(x) if curvilinear is None else np.asarray(curvilinear.s, dtype=np.float64)
     offset = np.zeros_like(x) if curvilinear is None else np.asarray(curvilinear.d, dtype=np.float64)

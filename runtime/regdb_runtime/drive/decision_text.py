@@ -57,7 +57,8 @@ def _candidate(item: CandidateReport, chosen: bool) -> Iterator[str]:
         cited = dict.fromkeys(rule.citation for rule in item.verdict.deciding)
         if cited:
             yield f"      law: {item.verdict.verdict} by {', '.join(cited)}"
-        limits = [f"{name} {show_si(found.bound, found.limit.unit)} ({found.regulation.citation})" for name, found in sorted(item.verdict.combined.items())]
+        combined = sorted(item.verdict.combined.items())
+        limits = [f"{name} {show_si(found.bound, found.limit.unit)} ({found.regulation.citation})" for name, found in combined]
         if limits:
             yield f"      limits: {', '.join(limits)}"
         if item.verdict.verdict == "unknown" and item.verdict.missing:

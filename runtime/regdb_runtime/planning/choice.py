@@ -36,7 +36,7 @@ class Option(Protocol):
 
 @dataclass(frozen=True, slots=True)
 class Choice:
-    """Index of the chosen option (None: none has a plan), what the next best of the same rank (and the same breach, unless both are lawful) costs more
+    """Index of the chosen option (None: none has a plan), what the next best of the same rank (and the same breach, unless lawful) costs more
     than it, and the flag. `violations`: how far the chosen one breaks each duty, or may, in their order; empty when it is lawful."""
 
     index: int | None

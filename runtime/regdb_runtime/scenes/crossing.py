@@ -10,7 +10,7 @@ from typing import Literal
 import numpy as np
 
 from regdb_runtime.maps.junctions import side_by_side
-from regdb_runtime.maps.lines import at_stations
+from regdb_runtime.maps.lines import at_stations, project
 from regdb_runtime.maps.road_map import Floats, Lane, RoadMap
 from regdb_runtime.observation import Track
 from regdb_runtime.scenes.lane_facts import NOT_FOR_TRAFFIC
@@ -47,6 +47,8 @@ class Way:
     turn: str
     bearing: float
     """Of its approach relative to the planned one's, radians: positive comes from the right."""
+    line: float = 0.0
+    """Metres from where its traffic stops (its limit line) to the junction's edge."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -96,7 +98,7 @@ class Crossings:
         if came == "same" and set(lane.predecessors) & {name for item in entry for name in side_by_side(road_map.lanes, item)}:
             return  # a neighbour in the planned movement's own approach is no other traffic at the junction
         for feeder in (*lane.predecessors, "") if not lane.predecessors else lane.predecessors:
-            self.ways.append(Way(lane.id, feeder, came, lane.turn or "straight", turned))
+            self.ways.append(Way(lane.id, feeder, came, lane.turn or "straight", turned, _line_before(road_map, feeder)))
             self._ends.append((starts, ends))
             before = _upstream(road_map, feeder, self.settings.upstream) if feeder else np.empty((0, 2))
             parts.append(_segments(before, own, len(self.ways) - 1))
@@ -142,6 +144,16 @@ class Crossings:
 
 def _entries(road_map: RoadMap, lane: str) -> frozenset[str]:
     return frozenset(road_map.lanes[lane].predecessors)
+
+
+def _line_before(road_map: RoadMap, entry: str) -> float:
+    """Metres from a lane's limit line on to its end, 0 without one."""
+    lane = road_map.lanes.get(entry)
+    if lane is None or lane.stop_line is None:
+        return 0.0
+    (ax, ay), (bx, by) = lane.stop_line.start, lane.stop_line.end
+    stations, _ = project(np.array([((ax + bx) / 2, (ay + by) / 2)]), lane.center)
+    return max(0.0, lane.length - float(stations[0]))
 
 
 def _first_heading(line: Floats) -> float:

@@ -161,7 +161,7 @@ class History:
 
 
 def _has_arrived(item: Arriving, at_line: float) -> bool:
-    return item.way.comes_from != "oncoming" and item.to_entrance <= at_line
+    return item.way.comes_from != "oncoming" and item.to_entrance - item.way.line <= at_line
 
 
 def _signalled(past: Past, signal: TurnSignal, moved: float, passed: float) -> Past:

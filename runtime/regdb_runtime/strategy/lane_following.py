@@ -1,4 +1,4 @@
-"""Manoeuvres between intersections: keep the lane, follow, signal for and make the changes of lane that the route, or what stands beside the lane, needs."""
+"""Manoeuvres between intersections: keep the lane, follow, signal for and make the lane changes that the route, or what stands beside it, needs."""
 
 from __future__ import annotations
 

@@ -97,7 +97,8 @@ class Picture:
             return None
         half, reach = float(self.here.widths.min()) / 2, self.settings.stands_beside
         for item in self.placed:
-            if item.track.warning_lights == "none" or item.track.speed > 0.5 or not 0.0 < item.rear - self.front <= self.settings.lane_change_distance:
+            ahead = item.rear - self.front
+            if item.track.warning_lights == "none" or item.track.speed > 0.5 or not 0.0 < ahead <= self.settings.lane_change_distance:
                 continue
             if item.left < half and -half - reach < item.left <= -half + 0.3:
                 return "left"
