@@ -43,7 +43,7 @@ def read_meta(tables: Tables) -> dict[str, str]:
 def read_vocabulary(tables: Tables) -> Vocabulary:
     """Every fact and attribute. Raises DatabaseDamaged."""
     lexicon = {(kind, name): tuple(json.loads(entries)) for kind, name, entries in _lexicon(tables)}
-    facts = [_fact(*row, entails=lexicon.get(("entails", row[0]), ())) for row in tables["fact"].select(*_FACT)]
+    facts = [replace(_fact(*row), entails=lexicon.get(("entails", row[0]), ())) for row in tables["fact"].select(*_FACT)]
     policies = read_fusion(tables)
     facts = [replace(fact, fusion=policies[fact.name]) if fact.name in policies else fact for fact in facts]
     attributes = tables["attribute"].select("name", "kind", "fact", "direction", "meaning")
@@ -57,7 +57,7 @@ def _lexicon(tables: Tables) -> Iterator[tuple[str, str, str]]:
 
 def _fact(
     name: str, kind: str, meaning: str, source: str, words: str, unit: str, assumed: str | None, within: str, because: str,
-    quiet: str | None, phrases: str, confusables: str, codes: str, entails: tuple[str, ...] = (),
+    quiet: str | None, phrases: str, confusables: str, codes: str,
 ) -> Fact:  # fmt: skip
     if kind not in KINDS:
         raise DatabaseDamaged(f"the fact {name!r} is of a kind {kind!r} that there is not")
@@ -65,7 +65,7 @@ def _fact(
     said = {word: tuple(texts) for word, texts in json.loads(phrases).items()}
     return Fact(
         name, kind, meaning, source, tuple(json.loads(words)), unit, assumption,
-        None if quiet is None else _value(name, kind, quiet), said, tuple(json.loads(confusables)), json.loads(codes), entails,
+        None if quiet is None else _value(name, kind, quiet), said, tuple(json.loads(confusables)), json.loads(codes),
     )  # fmt: skip
 
 
