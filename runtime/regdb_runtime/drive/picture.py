@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from regdb.units import from_si
 from regdb_runtime.drive.street_picture import Brush, paint_streets
 from regdb_runtime.errors import MissingExtra
 from regdb_runtime.geometry import boxes, distance
@@ -174,11 +175,11 @@ def _draw_clearance(brush: Brush, observation: Observation, footprint: Footprint
     a, b = _nearest_points(mine, _corners(other.x, other.y, other.heading, other.length, other.width))
     brush.axes.plot((a[0], b[0]), (a[1], b[1]), color=CLEARANCE, linewidth=brush.points(2.2), zorder=4.5, marker="|", markersize=brush.points(9))
     middle = (a + b) / 2
-    text = f"{min(gaps):.2f} m ({min(gaps) / 0.3048:.1f} ft)"
+    text = f"{min(gaps):.2f} m ({float(from_si(min(gaps), "ft")):.1f} ft)"
     box = {"boxstyle": "round,pad=0.25", "facecolor": "white", "edgecolor": CLEARANCE, "alpha": 0.95}
     brush.axes.annotate(
-        text, (float(middle[0]), float(middle[1])), xytext=(0, brush.points(-38)), textcoords="offset points",
-        fontsize=brush.points(12), fontweight="bold", color=CLEARANCE, ha="center", bbox=box,
+        text, (float(middle[0]), float(middle[1])), xytext=(brush.points(46), 0), textcoords="offset points",
+        fontsize=brush.points(12), fontweight="bold", color=CLEARANCE, ha="left", va="center", bbox=box,
         arrowprops={"arrowstyle": "-", "color": CLEARANCE, "linewidth": brush.points(1.2)}, zorder=7, annotation_clip=True,
     )  # fmt: skip
 
