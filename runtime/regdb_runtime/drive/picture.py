@@ -175,7 +175,7 @@ def _draw_clearance(brush: Brush, observation: Observation, footprint: Footprint
     a, b = _nearest_points(mine, _corners(other.x, other.y, other.heading, other.length, other.width))
     brush.axes.plot((a[0], b[0]), (a[1], b[1]), color=CLEARANCE, linewidth=brush.points(2.2), zorder=4.5, marker="|", markersize=brush.points(9))
     middle = (a + b) / 2
-    text = f"{min(gaps):.2f} m ({float(from_si(min(gaps), "ft")):.1f} ft)"
+    text = f"{min(gaps):.2f} m ({float(from_si(min(gaps), 'ft')):.1f} ft)"
     box = {"boxstyle": "round,pad=0.25", "facecolor": "white", "edgecolor": CLEARANCE, "alpha": 0.95}
     brush.axes.annotate(
         text, (float(middle[0]), float(middle[1])), xytext=(brush.points(46), 0), textcoords="offset points",
