@@ -82,3 +82,11 @@ def test_decision_distance_is_gentle_braking_after_a_tick():
 )
 def test_yellow_stops_whoever_can(shown, front, stops):
     assert must_stop_on_yellow(LINE, {"light": shown}, front, 10.0, SETTINGS) is stops
+
+
+def test_a_stop_begun_on_yellow_is_kept_while_hard_braking_reaches_the_line():
+    """Half way through braking the prudent bound no longer holds; who goes on then enters on red."""
+    yellow = {"light": (Indication("yellow"),)}
+    assert not must_stop_on_yellow(LINE, yellow, 88.0, 10.0, SETTINGS)
+    assert must_stop_on_yellow(LINE, yellow, 88.0, 10.0, SETTINGS, stopping=True)
+    assert not must_stop_on_yellow(LINE, yellow, 93.0, 10.0, SETTINGS, stopping=True)
