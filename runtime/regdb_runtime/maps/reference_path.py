@@ -15,6 +15,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from regdb_runtime.errors import OutsideDomain
+from regdb_runtime.maps.point_projection import project_one
 from regdb_runtime.maps.smoothing import Floats, PathSettings, tabulate
 from regdb_runtime.observation import EgoState
 from regdb_runtime.trajectory import FrenetState
@@ -28,6 +29,8 @@ EDGE = 1e-6
 CLOSEST = 0.05
 """Least 1 - curvature * offset at which a point's place is still sharp; at 0 it is the centre of curvature."""
 SAME_POINT = 1e-6
+FEW = 6
+"""Points up to which one by one, in plain numbers, is faster than all together; the bits are the same."""
 
 
 class ReferencePath:
@@ -78,19 +81,43 @@ class ReferencePath:
         y = table.y[index] + along * sin + across * cos + offsets * turn_cos
         return np.column_stack((x, y))
 
+    def drawn(self, s: Floats, d: float) -> tuple[Floats, Floats, Floats, Floats]:
+        """x, y and the path's direction at stations (m,) with one offset, and 1 - curvature * offset there: how sharp those points are.
+
+        As `to_plane` and `heading`, in one go; points at a centre of curvature are the caller's matter. Raises OutsideDomain for stations.
+        """
+        index, step = self._nearest(self._checked(s))
+        table = self.tabulated
+        bend, rate, turn = table.curvature.take(index), table.curvature_rate.take(index), table.heading.take(index)
+        along, across = _developed(bend, rate, step)
+        cos, sin = table.cos.take(index), table.sin.take(index)
+        turn_cos, turn_sin = _turned(cos, sin, bend * step + rate * step * step / 2)
+        x = table.x.take(index) + along * cos - across * sin - d * turn_sin
+        y = table.y.take(index) + along * sin + across * cos + d * turn_cos
+        return x, y, turn + step * (bend + step / 2 * rate), 1.0 - (bend + rate * step) * d
+
     def heading(self, s: ArrayLike) -> Floats:
         """Direction at stations, radians, continuous along the path."""
+        if isinstance(s, float):
+            place, left = self._entry(s)
+            seen = self.tabulated
+            return np.asarray(seen.heading.item(place) + left * (seen.curvature.item(place) + left / 2 * seen.curvature_rate.item(place)))
         index, step = self._nearest(self._checked(np.asarray(s, float)))
         table = self.tabulated
         return np.asarray(table.heading[index] + step * (table.curvature[index] + step / 2 * table.curvature_rate[index]))
 
     def curvature(self, s: ArrayLike) -> Floats:
         """Curvature at stations, 1/m, positive to the left."""
+        if isinstance(s, float):
+            place, left = self._entry(s)
+            return np.asarray(self.tabulated.curvature.item(place) + left * self.tabulated.curvature_rate.item(place))
         index, step = self._nearest(self._checked(np.asarray(s, float)))
         return np.asarray(self.tabulated.curvature[index] + step * self.tabulated.curvature_rate[index])
 
     def curvature_rate(self, s: ArrayLike) -> Floats:
         """Derivative of the curvature by station, 1/m^2."""
+        if isinstance(s, float):
+            return np.asarray(self.tabulated.curvature_rate.item(self._entry(s)[0]))
         return np.asarray(self.tabulated.curvature_rate[self._nearest(self._checked(np.asarray(s, float)))[0]])
 
     def project(self, xy: ArrayLike, extend: bool = False) -> tuple[Floats, Floats]:
@@ -100,10 +127,13 @@ class ReferencePath:
         raised: beyond the ends the path goes on straight, and such a point has the distance for offset.
         """
         points = np.asarray(xy, dtype=np.float64).reshape(-1, 2)
-        station, offset, sharp = np.empty(len(points)), np.empty(len(points)), np.empty(len(points))
-        for begin in range(0, len(points), BLOCK):
-            part = slice(begin, begin + BLOCK)
-            self._project(points[part], station[part], offset[part], sharp[part])
+        station, offset, sharp = np.empty((3, len(points)))
+        if len(points) <= FEW and np.isfinite(points).all():
+            self._project_few(points, station, offset, sharp)
+        else:
+            for begin in range(0, len(points), BLOCK):
+                part = slice(begin, begin + BLOCK)
+                self._project(points[part], station[part], offset[part], sharp[part])
         if not extend:
             self._checked(station)
             if len(points) and float(sharp.min()) < CLOSEST:
@@ -146,6 +176,15 @@ class ReferencePath:
         index = _within(np.rint(place), 0, len(self.tabulated.x) - 1).astype(np.intp)
         return index, (place - index) * self.tabulated.step
 
+    def _entry(self, station: float) -> tuple[int, float]:
+        """As `_nearest`, of one station of the domain. Raises OutsideDomain."""
+        table = self.tabulated
+        if not table.first - EDGE <= station <= table.last + EDGE:
+            self._checked(np.asarray(station))
+        place = (station - table.first) / table.step
+        index = min(max(round(place), 0), len(table.x) - 1)
+        return index, (place - index) * table.step
+
     def _checked(self, stations: Floats) -> Floats:
         table = self.tabulated
         out = (stations < table.first - EDGE) | (stations > table.last + EDGE)
@@ -172,13 +211,23 @@ class ReferencePath:
         x, y = x - middle[0], y - middle[1]
         return index, np.stack((-2 * x, -2 * y, x * x + y * y)).astype(np.float32), middle
 
-    def _project(self, points: Floats, station: Floats, offset: Floats, sharp: Floats) -> None:
-        """Nearest coarse entry, two steps of Newton's from entry to entry, two within the last; writes into the three arrays."""
-        table = self.tabulated
+    def _nearest_coarse(self, points: Floats) -> NDArray[np.intp]:
+        """The nearest of the coarse entries to each point (m, 2), as entries of the table (m,)."""
         coarse, factors, middle = self._coarse
         homogeneous = np.ones((len(points), 3), dtype=np.float32)
         homogeneous[:, :2] = points - middle
-        index = coarse[np.argmin(homogeneous @ factors, axis=1)]
+        return np.asarray(coarse[np.argmin(homogeneous @ factors, axis=1)])
+
+    def _project_few(self, points: Floats, station: Floats, offset: Floats, sharp: Floats) -> None:
+        """As `_project`, point by point."""
+        entries = self._nearest_coarse(points).tolist() if len(points) else []
+        for row, ((px, py), index) in enumerate(zip(points.tolist(), entries, strict=True)):
+            station[row], offset[row], sharp[row] = project_one(self.tabulated, px, py, index, COARSE)
+
+    def _project(self, points: Floats, station: Floats, offset: Floats, sharp: Floats) -> None:
+        """Nearest coarse entry, two steps of Newton's from entry to entry, two within the last; writes into the three arrays."""
+        table = self.tabulated
+        index = self._nearest_coarse(points)
         last, px, py = len(table.x) - 1, points[:, 0].copy(), points[:, 1].copy()
         for _ in range(2):
             along, across, bend = self._seen_from(px, py, index)

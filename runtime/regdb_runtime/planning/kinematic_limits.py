@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
@@ -20,6 +21,7 @@ REASONS = (
 )  # fmt: skip
 """In the order in which they are looked at. `cap_ahead`, `stop_ahead`: at the end of the plan it is too late to brake for what comes then.
 `leader`: into the rear of who is followed; `cruise`: faster than the goal wants to go."""
+_NAMES = np.array(("", *REASONS))
 UNITS = {
     "speed": "m/s", "acceleration": "m/s^2", "braking": "m/s^2", "jerk": "m/s^3", "curvature": "1/m", "curvature_rate": "1/(m s)",
     "yaw_rate": "rad/s", "lateral_acceleration": "m/s^2", "speed_cap": "m/s", "cap_ahead": "m/s", "stop": "m", "stop_ahead": "m/s",
@@ -58,24 +60,66 @@ class _Test:
     rule: str = ""
 
 
-def check(candidates: Candidates, limits: VehicleLimits, goal: Goal | None = None, footprint: Footprint | None = None) -> Feasibility:
+class Motion:
+    """What limits ask of plans, worked out once however many sets of limits they are held against.
+
+    `values`: by reason, what is measured at each instant; `spans`: its greatest and least value among all plans (NaN where one is NaN).
+    """
+
+    def __init__(self, plans: Candidates) -> None:
+        speed, curvature = plans.speed, plans.curvature
+        with np.errstate(invalid="ignore"):  # a plan through the centre of curvature has no finite curvature, and fails by that already
+            rate, yaw = np.subtract(curvature[:, 1:], curvature[:, :-1]), np.multiply(speed, curvature)
+            aside = np.multiply(yaw, speed)
+            self.values = {
+                "speed": speed, "acceleration": plans.acceleration, "jerk": plans.jerk, "curvature": curvature, "curvature_rate": rate,
+                "yaw_rate": yaw, "lateral_acceleration": aside,
+            }  # fmt: skip
+            self.spans = {name: (float(item.max()), float(item.min())) for name, item in self.values.items()} if len(plans) else {}
+
+    @cached_property
+    def fastest(self) -> Floats:
+        """The greatest speed of each plan, (n,)."""
+        return np.asarray(self.values["speed"].max(axis=1))
+
+
+def check(
+    candidates: Candidates, limits: VehicleLimits, goal: Goal | None = None, footprint: Footprint | None = None, motion: Motion | None = None
+) -> Feasibility:
     """Holds plans against limits, and against the caps and the stop point of a goal at the front bumper.
 
     All plans start alike. A start beyond a limit is no plan's fault: it may come back within `settle`. No plan that is ok is faster than a
-    cap anywhere in its stretch, between instants too, unless the vehicle is so already or the cap is `late`.
+    cap anywhere in its stretch, between instants too, unless the vehicle is so already or the cap is `late`. `motion`: that of the candidates,
+    where the caller has it.
     """
     late: list[str] = []
-    tests = [*_motion(candidates, limits)]
+    tests = _tests(candidates, limits, goal, footprint, motion or Motion(candidates), late)
+    return _gathered(len(candidates), tests, late)
+
+
+def keeps(candidates: Candidates, limits: VehicleLimits, goal: Goal | None, footprint: Footprint | None, motion: Motion) -> Flags:
+    """Which plans `check` finds ok, without what the others fail."""
+    fails = np.zeros(len(candidates), dtype=np.bool_)
+    for test in _tests(candidates, limits, goal, footprint, motion, []):
+        fails |= test.wrong
+    return ~fails
+
+
+def _tests(
+    candidates: Candidates, limits: VehicleLimits, goal: Goal | None, footprint: Footprint | None, motion: Motion, late: list[str]
+) -> list[_Test]:
+    """Every test that some plan may fail; `late` gets the rules of caps and stops that nothing could keep."""
+    tests = [*_motion(candidates, limits, motion)]
     if goal is not None and len(candidates):
         front = (footprint or Footprint()).front
         for cap in goal.caps:
-            tests += _cap(candidates, limits, cap, front, late)
+            tests += _cap(candidates, limits, cap, front, late, motion)
         if goal.stop is not None:
             tests += _stop(candidates, limits, goal.stop, front, late)
         if goal.follow is not None:
             tests += _leader(candidates, limits, goal.follow, front)
-        tests += _cruise(candidates, limits, goal.cruise_speed)
-    return _gathered(len(candidates), tests, late)
+        tests += _cruise(candidates, limits, goal.cruise_speed, motion)
+    return tests
 
 
 def _gathered(count: int, tests: list[_Test], late: list[str]) -> Feasibility:
@@ -91,37 +135,37 @@ def _gathered(count: int, tests: list[_Test], late: list[str]) -> Feasibility:
                 rules[index] = test.rule
     found = np.bincount(first + 1, minlength=len(REASONS) + 1).tolist()
     counts = {reason: number for reason, number in zip(REASONS, found[1:], strict=True) if number}
-    names = np.array(("", *REASONS))[first + 1]
-    return Feasibility(first < 0, counts, names, measured, bound, tuple(rules), tuple(late))
+    return Feasibility(first < 0, counts, _NAMES[first + 1], measured, bound, tuple(rules), tuple(late))
 
 
-def _motion(plans: Candidates, limits: VehicleLimits) -> Iterator[_Test]:
+def _motion(plans: Candidates, limits: VehicleLimits, motion: Motion) -> Iterator[_Test]:
     """The vehicle's own limits. Only what some plan breaks is looked at plan by plan."""
     step = float(plans.time[1] - plans.time[0])
     settled = int(np.searchsorted(plans.time, limits.settle - 1e-9))
-    speed, acceleration, curvature = plans.speed, plans.acceleration, plans.curvature
-    yield from _beyond("speed", speed, 0.0, limits.speed, settled)
-    yield from _beyond("acceleration", acceleration, -np.inf, limits.acceleration, settled)
-    yield from _beyond("braking", acceleration, -limits.braking, np.inf, settled)
-    yield from _beyond("jerk", plans.jerk, -limits.jerk, limits.jerk, 0)
-    yield from _beyond("curvature", curvature, -limits.curvature, limits.curvature, settled)
-    with np.errstate(invalid="ignore"):  # a plan through the centre of curvature has no finite curvature, and fails by that already
-        work = np.subtract(curvature[:, 1:], curvature[:, :-1])
-        yield from _beyond("curvature_rate", work, -limits.curvature_rate * step, limits.curvature_rate * step, 0, 1 / step)
-        turning = np.multiply(speed, curvature)
-        yield from _beyond("yaw_rate", turning, -limits.yaw_rate, limits.yaw_rate, settled)
-        np.multiply(turning, speed, out=turning)
-        yield from _beyond("lateral_acceleration", turning, -limits.lateral_acceleration, limits.lateral_acceleration, settled)
+    rate = limits.curvature_rate * step
+    yield from _beyond("speed", motion, "speed", 0.0, limits.speed, settled)
+    yield from _beyond("acceleration", motion, "acceleration", -np.inf, limits.acceleration, settled)
+    yield from _beyond("braking", motion, "acceleration", -limits.braking, np.inf, settled)
+    yield from _beyond("jerk", motion, "jerk", -limits.jerk, limits.jerk, 0)
+    yield from _beyond("curvature", motion, "curvature", -limits.curvature, limits.curvature, settled)
+    with np.errstate(invalid="ignore"):
+        yield from _beyond("curvature_rate", motion, "curvature_rate", -rate, rate, 0, 1 / step)
+        yield from _beyond("yaw_rate", motion, "yaw_rate", -limits.yaw_rate, limits.yaw_rate, settled)
+        aside = limits.lateral_acceleration
+        yield from _beyond("lateral_acceleration", motion, "lateral_acceleration", -aside, aside, settled)
 
 
-def _beyond(reason: str, values: Floats, least: float, greatest: float, settled: int, unit: float = 1.0) -> Iterator[_Test]:
+def _beyond(
+    reason: str, motion: Motion, name: str, least: float, greatest: float, settled: int, unit: float = 1.0
+) -> Iterator[_Test]:
     """Tests of rows against either bound, none where all keep it; NaN keeps none."""
-    if not len(values):
+    if not motion.spans:
         return
-    if not float(values.max()) <= greatest + ROUNDING:
-        yield _tested(reason, values, greatest, settled, unit, 1)
-    if not float(values.min()) >= least - ROUNDING:
-        yield _tested(reason, values, -least, settled, unit, -1)
+    highest, lowest = motion.spans[name]
+    if not highest <= greatest + ROUNDING:
+        yield _tested(reason, motion.values[name], greatest, settled, unit, 1)
+    if not lowest >= least - ROUNDING:
+        yield _tested(reason, motion.values[name], -least, settled, unit, -1)
 
 
 def _tested(reason: str, values: Floats, limit: float, settled: int, unit: float, sign: int) -> _Test:
@@ -139,15 +183,15 @@ def _worst(values: Floats, sign: int) -> Floats:
     return np.asarray(values.max(axis=1) if sign > 0 else -values.min(axis=1))
 
 
-def _cap(plans: Candidates, limits: VehicleLimits, cap: SpeedCap, front: float, late: list[str]) -> Iterator[_Test]:
+def _cap(plans: Candidates, limits: VehicleLimits, cap: SpeedCap, front: float, late: list[str], motion: Motion) -> Iterator[_Test]:
     """No faster than the cap from the instant before the front bumper enters to the instant after it leaves; and in time for it at the end."""
     enter, leave = cap.start - front, cap.end - front
     begin, speed = float(plans.station[0, 0]), float(plans.speed[0, 0])
     if begin >= leave:
         return
-    if float(plans.speed.max()) <= cap.speed + ROUNDING:
+    if motion.spans["speed"][0] <= cap.speed + ROUNDING:
         return
-    rows = np.flatnonzero(plans.speed.max(axis=1) > cap.speed + ROUNDING)
+    rows = np.flatnonzero(motion.fastest > cap.speed + ROUNDING)
     surplus, left = speed * speed - cap.speed * cap.speed, enter - begin
     braking, excused = limits.recovery, surplus > 0 and left <= 0
     if surplus > 0 and left > 0 and surplus > 2 * limits.late * left:
@@ -176,10 +220,10 @@ def _coming_down(plans: Candidates, limits: VehicleLimits, braking: float) -> Fl
     return np.asarray(speed + rise - braking * np.maximum(plans.time - limits.settle, 0.0))
 
 
-def _cruise(plans: Candidates, limits: VehicleLimits, wanted: float) -> Iterator[_Test]:
+def _cruise(plans: Candidates, limits: VehicleLimits, wanted: float, motion: Motion) -> Iterator[_Test]:
     """No faster than the goal wants, or coming down to it."""
     most = wanted + CRUISE_TOLERANCE
-    if float(plans.speed.max()) <= most:
+    if motion.spans["speed"][0] <= most:
         return
     bound = np.full(len(plans.time), most)
     if float(plans.speed[0, 0]) > most:

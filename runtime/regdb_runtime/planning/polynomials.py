@@ -14,11 +14,11 @@ FIRST, SECOND = np.arange(1.0, 6.0), np.array([2.0, 6.0, 12.0, 20.0])
 
 def change_speed(speed: ArrayLike, acceleration: ArrayLike, end_speed: ArrayLike, duration: ArrayLike) -> Floats:
     """Coefficients (n, 6), lowest first, of the quartic from station 0 that ends with a speed and no acceleration (least integral of jerk^2)."""
-    v, a, w, t = np.broadcast_arrays(*(np.asarray(value, float) for value in (speed, acceleration, end_speed, duration)))
+    v, a, w, t = (np.asarray(value, float) for value in (speed, acceleration, end_speed, duration))
     gain = w - v
     third = gain / t**2 - 2 * a / (3 * t)
     fourth = a / (4 * t**2) - gain / (2 * t**3)
-    return np.stack((np.zeros_like(v), v, a / 2, third, fourth, np.zeros_like(v)), axis=-1)
+    return _columns((0.0, v, a / 2, third, fourth, 0.0), fourth)
 
 
 def change_way(duration: ArrayLike, speed: ArrayLike, acceleration: ArrayLike, end_speed: ArrayLike) -> Floats:
@@ -41,14 +41,22 @@ def change_time(way: ArrayLike, speed: ArrayLike, acceleration: ArrayLike, end_s
 
 def quintic(start: tuple[ArrayLike, ArrayLike, ArrayLike], end: tuple[ArrayLike, ArrayLike, ArrayLike], duration: ArrayLike) -> Floats:
     """Coefficients (n, 6), lowest first, between two values with their first and second derivatives."""
-    x0, v0, a0, x1, v1, a1, t = np.broadcast_arrays(*(np.asarray(value, float) for value in (*start, *end, duration)))
+    x0, v0, a0, x1, v1, a1, t = (np.asarray(value, float) for value in (*start, *end, duration))
     way = x1 - x0 - v0 * t - a0 * t * t / 2
     speed = (v1 - v0 - a0 * t) * t
     rate = (a1 - a0) * t * t
     third = (10 * way - 4 * speed + rate / 2) / t**3
     fourth = (-15 * way + 7 * speed - rate) / t**4
     fifth = (6 * way - 3 * speed + rate / 2) / t**5
-    return np.stack((x0, v0, a0 / 2, third, fourth, fifth), axis=-1)
+    return _columns((x0, v0, a0 / 2, third, fourth, fifth), fifth)
+
+
+def _columns(values: tuple[ArrayLike, ...], like: Floats) -> Floats:
+    """Values side by side, (n, 6); each is broadcast to the shape of `like`."""
+    found = np.empty((*np.shape(like), len(values)))
+    for column, value in enumerate(values):
+        found[..., column] = value
+    return found
 
 
 @dataclass(frozen=True, eq=False)

@@ -20,6 +20,9 @@ SLOWEST = 0.5
 AGREES = math.radians(40.0)
 """A track whose heading is farther off its lane's course than this is doing something of its own."""
 
+SHARP = 0.1
+"""Least 1 - curvature * offset of a way to be followed: clear of the bends' centres."""
+
 
 @dataclass(frozen=True, eq=False)
 class AlongLanes:
@@ -52,21 +55,18 @@ class AlongLanes:
         path = self._path(lane, station + float(way[-1]), track)
         stations = station + way
         inside = np.minimum(stations, path.path.end)
-        if not math.isfinite(offset) or not self._sharp(path, inside, offset):
+        if not math.isfinite(offset):
             return
-        plane, course = path.path.to_plane(inside, np.full_like(inside, offset)), path.path.heading(inside)
+        there_x, there_y, course, sharp = path.path.drawn(inside, offset)
+        if not (sharp > SHARP).all():
+            return
         beyond = stations - inside
         x, y, heading = row
-        x[:] = plane[:, 0] + beyond * np.cos(course)
-        y[:] = plane[:, 1] + beyond * np.sin(course)
+        x[:] = there_x + beyond * np.cos(course)
+        y[:] = there_y + beyond * np.sin(course)
         heading[:] = course
         x += track.x - x[0]
         y += track.y - y[0]
-
-    @staticmethod
-    def _sharp(path: LanePath, stations: Floats, offset: float) -> bool:
-        """Whether the offset stays clear of the bends' centres."""
-        return bool((1.0 - path.path.curvature(stations) * offset > 0.1).all())
 
     def _path(self, lane: str, length: float, track: Track) -> LanePath:
         """The lane and those that follow, as far as is driven."""

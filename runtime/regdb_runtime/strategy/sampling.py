@@ -13,7 +13,7 @@ from regdb_runtime.planning.contacts import Sweeper
 from regdb_runtime.planning.cost import Integers, MotionCosts, motion_cost
 from regdb_runtime.planning.cost_settings import CostSettings
 from regdb_runtime.planning.goal import Goal
-from regdb_runtime.planning.kinematic_limits import Feasibility, check
+from regdb_runtime.planning.kinematic_limits import Feasibility, Motion, check, keeps
 from regdb_runtime.planning.lattice import sample
 from regdb_runtime.planning.prediction import Predictions
 from regdb_runtime.planning.settings import LatticeSettings, VehicleLimits
@@ -74,9 +74,10 @@ class Sampler:
         if start is None:
             start = moment.states[path] = path.frenet_state(moment.start)
         candidates = sample(path, start, goal, self.footprint, self.lattice)
-        feasible = check(candidates, self.limits, goal, self.footprint)
+        motion = Motion(candidates)
+        feasible = check(candidates, self.limits, goal, self.footprint, motion)
         costs = motion_cost(candidates, self.cost, moment.wanted_speed, self._users(path, moment))
-        costs = self._with_comfort(costs, candidates, goal)
+        costs = self._with_comfort(costs, candidates, goal, motion)
         return Sampled(candidates, feasible, costs, costs.order())
 
     def _users(self, path: ReferencePath, moment: Moment) -> UsersAlongPath | None:
@@ -88,8 +89,8 @@ class Sampler:
             found = moment.users[path] = users_along(path, moment.predictions, place, self.footprint, self.cost)
         return found
 
-    def _with_comfort(self, costs: MotionCosts, candidates: Candidates, goal: Goal) -> MotionCosts:
+    def _with_comfort(self, costs: MotionCosts, candidates: Candidates, goal: Goal, motion: Motion) -> MotionCosts:
         """Plans beyond what is comfortable, now or by leaving too little for what comes after the horizon, cost what nothing else makes up for:
         a plan that puts braking off looks cheap until its horizon ends."""
-        beyond = (~check(candidates, self.comfortable, goal, self.footprint).ok).astype(np.float64)
+        beyond = (~keeps(candidates, self.comfortable, goal, self.footprint, motion)).astype(np.float64)
         return replace(costs, comfort=costs.comfort + self.beyond_comfort * beyond, parts={**costs.parts, "beyond_comfort": beyond})
