@@ -6,7 +6,7 @@ import pytest
 from regdb_runtime.database import RegulationDatabase
 from regdb_runtime.errors import WorldError
 from regdb_runtime.observation import EgoState
-from regdb_runtime.scenes.tellers import JUDGED_FACTS, LIGHT_FACTS, MAP_FACTS, TRACK_FACTS, eye_facts
+from regdb_runtime.scenes.tellers import JUDGED_FACTS, LIGHT_FACTS, MAP_FACTS, TRACK_FACTS, UNTOLD, eye_facts
 from regdb_runtime.worlds.built_in.build import shipped_vocabulary
 from regdb_runtime.worlds.eye import Eye, NoEye, RecordedEye, ScriptedEye, Sighting, build_eye
 from regdb_runtime.worlds.scene_spec import EyeSpec, SightingSpec
@@ -20,7 +20,8 @@ CRUISE = Plan("lane_following.go_straight", "lane_following.go_straight", {"plan
 
 def test_every_fact_of_perception_has_one_teller() -> None:
     vocabulary = shipped_vocabulary()
-    groups = (LIGHT_FACTS, MAP_FACTS, TRACK_FACTS, JUDGED_FACTS, eye_facts(vocabulary))
+    told_by_nobody = {name for name in UNTOLD if vocabulary.facts[name].source == "perception"}
+    groups = (LIGHT_FACTS, MAP_FACTS, TRACK_FACTS, JUDGED_FACTS, eye_facts(vocabulary), told_by_nobody)
     perceived = {fact.name for fact in vocabulary if fact.source == "perception"}
     assert set().union(*groups) == perceived
     assert sum(map(len, groups)) == len(perceived)
