@@ -20,7 +20,7 @@ def measure(
     maneuver: Maneuver, settings: AssessmentSettings,
 ) -> None:  # fmt: skip
     """Facts about the lines across the road. Within junctions there are none, and nothing is driven over."""
-    station, tolerance = candidates.station[rows], settings.line_tolerance
+    station, tolerance = candidates.station.take(rows, axis=0), settings.line_tolerance
     index = sections.columns(station)
     left, right = plans.left - tolerance, plans.right + tolerance
     lines = sections.at(sections.across, index)

@@ -45,7 +45,7 @@ def extents(candidates: Candidates, rows: NDArray[np.intp], path: ReferencePath,
     Corners are placed by the angle to the path and its curvature at the rear axle, to second order: over a car's front overhang of 3.9 m in a
     turn of 10 m radius that leaves less than 0.1 m, on roads of more than 50 m radius less than 4 mm.
     """
-    station, offset, heading = candidates.station[rows], candidates.offset[rows], candidates.heading[rows]
+    station, offset, heading = (part.take(rows, axis=0) for part in (candidates.station, candidates.offset, candidates.heading))
     table = path.tabulated
     place = np.minimum(np.maximum(station, path.start), path.end) - table.first
     index = np.rint(place / table.step).astype(np.intp)
@@ -60,7 +60,7 @@ def extents(candidates: Candidates, rows: NDArray[np.intp], path: ReferencePath,
     return Extents(
         station + footprint.front, station - footprint.rear_overhang,
         offset + np.maximum(sine, behind) + cosine, offset + np.minimum(sine, behind) - cosine,
-        candidates.x[rows], candidates.y[rows], heading, footprint,
+        candidates.x.take(rows, axis=0), candidates.y.take(rows, axis=0), heading, footprint,
     )  # fmt: skip
 
 

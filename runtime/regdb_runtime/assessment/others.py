@@ -49,7 +49,7 @@ def others(path: ReferencePath, predictions: Predictions, wanted: Sequence[int])
     x, y, heading = predictions.x[rows], predictions.y[rows], predictions.heading[rows]
     station, offset = path.project(np.column_stack([x.ravel(), y.ravel()]), extend=True)
     station, offset = station.reshape(x.shape), offset.reshape(x.shape)
-    turned = heading - path.heading(np.clip(station, path.start, path.end))
+    turned = heading - path.heading(np.minimum(np.maximum(station, path.start), path.end))
     cosine, sine = np.cos(turned), np.sin(turned)
     length, width = predictions.length[rows, None], predictions.width[rows, None]
     along, across = (np.abs(cosine) * length + np.abs(sine) * width) / 2, (np.abs(sine) * length + np.abs(cosine) * width) / 2

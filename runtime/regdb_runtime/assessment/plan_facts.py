@@ -83,9 +83,9 @@ def measure(what: Measuring, candidates: Candidates, rows: NDArray[np.intp]) -> 
     """The facts of some plans (k rows of the candidates)."""
     settings = what.settings
     plans = extents(candidates, rows, what.maneuver.lane_path.path, what.footprint)
-    speed = candidates.speed[rows]
+    speed = candidates.speed.take(rows, axis=0)
     columns: dict[str, Column] = {}
-    _speeds(columns, candidates, rows, settings)
+    _speeds(columns, speed, candidates.acceleration.take(rows, axis=0), settings)
     columns["plan.stop_places"] = stop_places(plans, speed, what.maneuver.junction, settings)
     if what.sections is not None:
         driven_over.measure(columns, what.sections, plans, candidates, rows, what.maneuver, settings)
@@ -97,12 +97,11 @@ def measure(what: Measuring, candidates: Candidates, rows: NDArray[np.intp]) -> 
     return PlanFacts(what.shared, columns, of_stretch, reached, len(rows), speed, plans.front, borders)
 
 
-def _speeds(columns: dict[str, Column], candidates: Candidates, rows: NDArray[np.intp], settings: AssessmentSettings) -> None:
-    speed = candidates.speed[rows]
+def _speeds(columns: dict[str, Column], speed: Floats, acceleration: Floats, settings: AssessmentSettings) -> None:
     now = speed[:, :1]
     columns["plan.reduces_speed"] = truth((speed < now - settings.slows_by).any(axis=1) | (speed[:, -1] < settings.standstill))
     columns["plan.speeds_up"] = truth((speed > now + settings.slows_by).any(axis=1))
-    columns["plan.slows_suddenly"] = truth((candidates.acceleration[rows] < -settings.sudden_braking).any(axis=1))
+    columns["plan.slows_suddenly"] = truth((acceleration < -settings.sudden_braking).any(axis=1))
 
 
 def _least_clearance(maneuver: Maneuver, stretches: Sequence[Stretch]) -> float:

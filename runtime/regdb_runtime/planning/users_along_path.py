@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from functools import cache
 from typing import Any
 
 import numpy as np
@@ -44,13 +45,13 @@ class UsersAlongPath:
 
 def users_along(path: Path, predictions: Predictions, ego: tuple[float, float], footprint: Footprint, settings: CostSettings) -> UsersAlongPath:
     """Those who come within `settings.nearby` of the vehicle's place now (x, y) at some instant, at most `nearby_most`, the nearest first."""
-    instants = np.unique(np.linspace(0, len(predictions.time) - 1, settings.instants).round().astype(np.int64))
+    instants = _instants(len(predictions.time), settings.instants)
     away = np.hypot(predictions.x[:, instants] - ego[0], predictions.y[:, instants] - ego[1]).min(axis=1, initial=np.inf)
     rows = np.argsort(away, kind="stable")[: settings.nearby_most]
     rows = rows[away[rows] <= settings.nearby]
     x, y, heading, speed = (part[rows][:, instants] for part in (predictions.x, predictions.y, predictions.heading, predictions.speed))
     s, d = (part.reshape(x.shape) for part in path.project(np.stack((x.ravel(), y.ravel()), axis=1), extend=True))
-    turn = heading - path.heading(np.clip(s, path.start, path.end))
+    turn = heading - path.heading(np.minimum(np.maximum(s, path.start), path.end))
     cos, sin = np.cos(turn), np.sin(turn)
     long, wide = predictions.length[rows, None] / 2, predictions.width[rows, None] / 2
     reach = predictions.reach[rows][:, instants]
@@ -58,6 +59,12 @@ def users_along(path: Path, predictions: Predictions, ego: tuple[float, float], 
     return UsersAlongPath(
         instants, s, d, speed * cos, speed * sin, along, across, footprint.center, footprint.length / 2, footprint.width / 2
     )
+
+
+@cache
+def _instants(points: int, wanted: int) -> NDArray[np.int64]:
+    """So many of a plan's instants, evenly spread; not to be written to."""
+    return np.unique(np.linspace(0, points - 1, wanted).round().astype(np.int64))
 
 
 def nearness(candidates: Candidates, settings: CostSettings, users: UsersAlongPath) -> Mapping[str, Floats]:

@@ -14,7 +14,7 @@ from regdb_runtime.planning.cost import Integers, MotionCosts, motion_cost
 from regdb_runtime.planning.cost_settings import CostSettings
 from regdb_runtime.planning.goal import Goal
 from regdb_runtime.planning.kinematic_limits import Feasibility, Motion, check, keeps
-from regdb_runtime.planning.lattice import sample
+from regdb_runtime.planning.lattice import Workspace, sample
 from regdb_runtime.planning.prediction import Predictions
 from regdb_runtime.planning.settings import LatticeSettings, VehicleLimits
 from regdb_runtime.planning.users_along_path import UsersAlongPath, users_along
@@ -52,7 +52,10 @@ class Moment:
 
 @dataclass(frozen=True, eq=False)
 class Sampler:
-    """The sampler with its numbers; `beyond_comfort` is added to C_comfort of plans outside the `comfortable` limits."""
+    """The sampler with its numbers; `beyond_comfort` is added to C_comfort of plans outside the `comfortable` limits.
+
+    Plans live in memory kept from tick to tick: those of a moment are valid until plans of the next moment are asked for.
+    """
 
     footprint: Footprint
     lattice: LatticeSettings
@@ -60,6 +63,7 @@ class Sampler:
     comfortable: VehicleLimits
     beyond_comfort: float
     cost: CostSettings
+    rooms: list[Workspace] = field(default_factory=list, repr=False)
 
     def plans(self, maneuver: Maneuver, moment: Moment) -> Sampled:
         """Plans towards the manoeuvre's goal along its path."""
@@ -73,12 +77,18 @@ class Sampler:
         start = moment.states.get(path)
         if start is None:
             start = moment.states[path] = path.frenet_state(moment.start)
-        candidates = sample(path, start, goal, self.footprint, self.lattice)
+        candidates = sample(path, start, goal, self.footprint, self.lattice, self._room(len(moment.sampled)))
         motion = Motion(candidates)
         feasible = check(candidates, self.limits, goal, self.footprint, motion)
         costs = motion_cost(candidates, self.cost, moment.wanted_speed, self._users(path, moment))
         costs = self._with_comfort(costs, candidates, goal, motion)
         return Sampled(candidates, feasible, costs, costs.order())
+
+    def _room(self, number: int) -> Workspace:
+        """The memory of the plans sampled as such a one of their moment."""
+        if number == len(self.rooms):
+            self.rooms.append(Workspace())
+        return self.rooms[number]
 
     def _users(self, path: ReferencePath, moment: Moment) -> UsersAlongPath | None:
         if not self.cost.asks_for_others:
