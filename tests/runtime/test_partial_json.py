@@ -68,7 +68,9 @@ def test_no_text_raises(text: str) -> None:
     ['{"a":' * 3000 + "1" + "}" * 3000, "[" * 100_000, "{" * 100_000, '{"' * 50_000, '{"a": "' + "\\" * 99_999, '{"a": ' + "9" * 100_000 + "}"],
 )
 def test_garbage_is_done_with_quickly_and_without_a_deep_stack(text: str) -> None:
-    first_object(text)
+    found = first_object(text)
+    assert found is None or text[found.start] == "{"
+    assert found is None or found.start < found.end <= len(text)
 
 
 def test_places_are_those_of_the_text() -> None:
